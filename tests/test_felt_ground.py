@@ -184,6 +184,9 @@ def test_roughness_rises_at_once_falls_slowly_and_is_bounded():
     roughness.decay(4.0)
     assert roughness.value == pytest.approx(0.092 / math.e)
     assert (roughness.drawn_in, roughness.cycle_time, roughness.speed) == pytest.approx((0.02, 1.1875, 0.775))
+    for value, cycle_time in ((0.04, 1.25), (0.045, 1.125), (0.05, 1.0), (0.1, 1.0)):
+        roughness.value = value
+        assert (roughness.cycle_time, roughness.speed) == pytest.approx((cycle_time, 0.7))
     roughness.decay(20.0)
     assert (roughness.drawn_in, roughness.cycle_time, roughness.speed) == (0.0, 1.0, 1.0)
     for name, value in (("cycle_time", 0.9), ("catch_up", 0.5), ("speed", 0), ("speed", 1.2), ("drawn_in", math.nan)):
@@ -213,7 +216,7 @@ def test_on_rough_ground_cycles_get_longer_feet_closer_and_fast_walks_slower(spe
     twist = (speed * top, 0.0, 0.0)
     for tick in range(450):
         if tick < 150:
-            walk.ground.body.roughness.landed(0.06)
+            walk.ground.body.roughness.landed(0.048)
         readings = SensorReadings(contacts=controller.contacts, attitude=(0.0, 0.0))
         controller.step(twist, 0.02, readings)
         if tick == 149:

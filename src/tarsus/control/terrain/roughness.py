@@ -19,6 +19,8 @@ _EVEN = 0.008
 _MEMORY = 4.0
 # Roughness up to which feet are drawn in, and from which on until which cycle and speed change [m].
 _ROUGH, _ROUGHEST = 0.02, 0.04
+# Roughness at which cycles are as on even ground again: legs reach less high and low in long strokes [m].
+_HIGH = 0.05
 # Stance, cycle and speed change in steps of this share: each has limits computed anew.
 _STEPS = 4
 
@@ -37,7 +39,8 @@ class GroundAdaptation:
     drawn_in : float
         How far feet may be drawn in, so that legs reach higher and lower [m].
     cycle_time : float
-        Greatest cycle time on rough ground, over the one on even ground: fewer and longer steps slip less.
+        Greatest cycle time on rough ground, over the one on even ground: fewer and longer steps slip less, but legs
+        reach less high and low in them.
     speed : float
         Greatest speed on rough ground, over the top speed on even ground.
     catch_up : float
@@ -131,7 +134,8 @@ class Roughness:
     @property
     def cycle_time(self) -> float:
         """Cycle time over that on even ground."""
-        return 1 + self._share(_ROUGH, _ROUGHEST) * (self.adaptation.cycle_time - 1)
+        share = self._share(_ROUGH, _ROUGHEST) - self._share(_ROUGHEST, _HIGH)
+        return 1 + share * (self.adaptation.cycle_time - 1)
 
     @property
     def speed(self) -> float:
