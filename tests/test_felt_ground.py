@@ -424,6 +424,15 @@ def test_a_foot_that_has_stood_on_even_ground_looks_for_it_slowly_while_three_ot
         assert height == pytest.approx(start + 0.1 * speed)
 
 
+def test_a_foot_that_has_stepped_back_goes_down_at_its_place_while_the_body_backs_off():
+    felt = FeltInputs([], [], [], 0.0, 0.0, (0.0, 0.0), 0j, 0.0, -0.15 + 0j, 0.8, 1.0, 0.03, 0.4, 0.0, {})
+    for way, goes_down in ((-0.0015, True), (-0.02, False)):
+        under = GroundUnder(0.0, lowest=-0.2, highest=0.2, place=way + 0j)
+        height, place, _ = _searching(0.01, FeltFoot(), 0j, 0.0, under, felt, 0.01)
+        assert (height < 0.01) == goes_down
+        assert place == (way if goes_down else 0j)
+
+
 def test_a_foot_that_has_met_an_obstacle_goes_down_once_it_is_past_it():
     felt = FeltInputs([], [], [], 0.0, 0.0, (0.0, 0.0), 0j, 0.0, 0j, 0.8, 1.0, 0.03, 1.0, 0.0, {})
     risen = FeltFoot(top=0.05, top_phase=0.4, drawn_back=0j)

@@ -8,6 +8,7 @@ import pytest
 import tarsus
 from tarsus.control.limiter.lost_time import LostTime
 from tarsus.control.limiter.protocol import TwistGrant
+from tarsus.control.tick.limit import twist_limiters
 from tarsus.simulation import SimulatedPlant, terrain
 
 DT = 0.02
@@ -19,7 +20,7 @@ class Ground:
 
     def __init__(self, most=1.5, *, felt=True):
         self.rate, self.fraction, self.felt = 1.0, 1.0, felt
-        self.limiter = LostTime(most, lambda: self.rate)
+        self.limiter = LostTime(most, lambda _: self.rate)
 
     def walk(self, seconds, *, rate=1.0, twist=AHEAD):
         self.rate, way = rate, 0.0
@@ -53,6 +54,19 @@ def test_what_is_made_up_for_is_bounded():
     ground = Ground()
     ground.walk(60.0, rate=0.0)
     assert ground.walk(20.0) == pytest.approx(23.0, abs=0.2)
+
+
+def test_the_way_that_the_body_backs_off_is_lost_as_well():
+    walk = tarsus.WalkController(tarsus.load_robot("strider"))._walk
+    rate, missing = twist_limiters(walk)[0]._rate, walk.ground.missing
+    assert rate(AHEAD) == 1.0
+    missing.back = -0.15 + 0j
+    assert rate(AHEAD) == pytest.approx(-0.5)
+    missing.refuses = True
+    assert rate(AHEAD) == pytest.approx(-1.5)
+    # The way back is not, nor is turning.
+    for twist in ((-0.1, 0.0, 0.0), (0.0, 0.1, 0.0), (0.0, 0.0, 0.5)):
+        assert rate(twist) == 0.0
 
 
 @pytest.mark.parametrize("twist", [(0.0, 0.0, 0.0), (0.0, 0.1, 0.0), (-0.1, 0.0, 0.0), (0.0, 0.0, 0.5)])

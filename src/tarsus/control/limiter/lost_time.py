@@ -25,10 +25,11 @@ class LostTime:
     most : float
         Greatest speed over the commanded one, at least 1.
     rate : callable
-        Returns the rate at which the ground lets the walk advance, 0 to 1, or None while the robot is carried.
+        Returns the rate at which the ground lets the walk advance along a commanded twist, at most 1 and negative
+        while the body backs off, or None while the robot is carried.
     """
 
-    def __init__(self, most: float, rate: Callable[[], float | None]) -> None:
+    def __init__(self, most: float, rate: Callable[[Sequence[float]], float | None]) -> None:
         self._most, self._rate, self._lost = most, rate, 0.0
         self._twist: tuple[float, ...] = (0.0, 0.0, 0.0)
 
@@ -39,7 +40,7 @@ class LostTime:
         # Small changes of the command add up: it is compared with the one with which time was lost first.
         if not self._lost or _dot(twist, first) <= _ELSEWHERE * math.sqrt(square * _dot(first, first)):
             self._twist, self._lost = twist, 0.0
-        rate = self._rate() if request.state.felt and square else None
+        rate = self._rate(twist) if request.state.felt and square else None
         if rate is None:
             self._lost = 0.0
         else:

@@ -17,9 +17,10 @@ __all__ = ["SLOW", "MissingGround", "Search", "depth_allowance"]
 _DEEP = 0.75
 # Depths from which on the walk slows down, and stands still, or goes on slowly with feet at the end of their reach [m].
 _SLOWS, _STANDS, _SLOWEST = 0.005, 0.02, 0.25
-# A foot that is measured higher than commanded by more is held up by its leg [m]; where it is at less depth, over the
-# body height, that leg may rest on the edge of a step; how long that lasts until the foot does not search on [s].
-_HELD_UP, _STEP, _HELD = 0.012, 0.5, 0.3
+# A foot that is measured higher than commanded by more is held up by its leg [m]; where it is at less depth than one of
+# these, over the body height and [m], that leg may rest on the edge of a step; how long that lasts until the foot does
+# not search on [s].
+_HELD_UP, _STEP, _LOW_STEP, _HELD = 0.007, 0.5, 0.05, 0.3
 # A foot that lifts the body by more stands on ground that is not felt: the robot does not tip towards it [m].
 _LIFTS = 0.008
 # A walk that is slower says why.
@@ -181,11 +182,11 @@ class MissingGround:
             pace = max(1 - (depth - slows) / (deep - slows), slowest)
             self.pace, self._slows = min((self.pace, self._slows), (pace, self._names[leg]))
             # At another place, a foot does not search for long at the end of its reach.
-            held_up = raised > _HELD_UP and depth - raised < _STEP * height
+            held_up = raised > _HELD_UP and depth - raised < max(_STEP * height, self._scale * _LOW_STEP)
             self._held[leg] = (before.get(leg, 0.0) + dt) * (held_up and not falls)
             long = not lasts or self._held[leg] > _HELD
             hangs = not falls and depth > deep if leg in self.places else long
-            missing = depth > _DEEP * height + rough or hangs
+            missing = depth - max(raised, 0.0) > _DEEP * height + rough or hangs
             self._tip(way, tips=sunk > deep or (not held and sunk > -_LIFTS and depth + max(sunk, 0.0) > deep))
             if missing and not (self.steps_back(leg, feet[leg]) or self.gives_up(leg)):
                 self.edge = depth if held_up else self.edge

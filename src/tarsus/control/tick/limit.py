@@ -27,10 +27,12 @@ def twist_limiters(walk: WalkComponents) -> list[TwistLimiter]:
     """
     ground, roughness = walk.ground, walk.ground.body.roughness
 
-    def rate() -> float | None:
+    def rate(twist: Sequence[float]) -> float | None:
         if ground.condition.carried:
             return None
-        return 0.0 if ground.missing.refuses else ground.support.pace * walk.time_scaling.rate
+        velocity = complex(*twist[:2])
+        backs = (ground.missing.back * velocity.conjugate()).real / max(abs(velocity) ** 2, 1e-6)
+        return min(backs, 0.0) + ground.support.pace * walk.time_scaling.rate * (not ground.missing.refuses)
 
     return [
         LostTime(roughness.adaptation.catch_up, rate),

@@ -112,7 +112,9 @@ def _searching(
 ) -> tuple[float, complex, float]:
     """Return height, place and speed of a foot that should stand and has no contact: it goes down, or steps back."""
     over, speed = height - under.expected, foot.speed
-    if under.place is None or under.place == place:
+    if under.place is None or abs(under.place - place) <= _BACK * dt:
+        # Its place moves while the body backs off.
+        place = place if under.place is None else under.place
         least = felt.scale * _SEARCHING
         fastest = felt.lowering if under.place is None else max(felt.lowering, least)
         loses = math.isnan(foot.top) and over < -felt.scale * _NEAR and sum(felt.stands) >= _OTHERS
