@@ -209,6 +209,20 @@ def test_where_rough_ground_is_not_found_the_walk_goes_on_with_other_footholds()
     assert not refused(0.02)
 
 
+def test_a_walk_that_goes_on_at_an_edge_makes_up_for_no_lost_time_at_first():
+    missing, fast = stepped(MissingGround(NAMES), [(0, 0.05, False, False)], roughness=0.02), []
+    request = TwistRequest((0.1, 0.0, 0.0), 0.01, None, np.zeros(3))
+    assert MissingGround(NAMES).limit(request, TwistGrant(fraction=1.5)).fraction == 1.5
+    for _ in range(300):
+        missing.limit(request, TwistGrant(fraction=1.5))
+        stepped(missing, [], stands=[True] * 6)
+        fast.append(missing.limit(request, TwistGrant(fraction=1.5)).fraction)
+    # It stands for a second, goes on at the commanded speed, and is faster then.
+    assert sorted(fast) == fast
+    assert 140 <= fast.count(1.0) <= 155
+    assert fast[-1] == 1.5
+
+
 @pytest.mark.parametrize(("raised", "goes_on"), [(0.0, False), (0.005, False), (0.03, True)])
 def test_where_a_leg_may_rest_on_the_edge_of_a_step_the_walk_goes_on_with_other_footholds(raised, goes_on):
     missing = stepped(MissingGround(NAMES), [(0, 0.077, False, False)], raised=raised)

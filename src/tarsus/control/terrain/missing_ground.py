@@ -40,8 +40,9 @@ _FIRM, _MARGIN, _BACKS, _SPEED = 0.06, 0.03, 0.08, 0.15
 # A foot that finds no ground at less depth than this is over no hole: the leg does not reach there [m].
 _SHALLOW = 0.02
 # How often and when the walk tries other footholds at an edge to ground that is seen, not reached [s]; after which
-# time without holes that, and which edge the robot has left, is forgotten [s].
-_AGAIN, _WAITS, _FORGETS = 2, 1.0, 6.0
+# time without holes that, and which edge the robot has left, is forgotten [s]; for how long such a walk makes up for no
+# lost time [s].
+_AGAIN, _WAITS, _FORGETS, _CAREFUL = 2, 1.0, 6.0, 1.5
 
 
 class Search(NamedTuple):
@@ -273,7 +274,8 @@ class MissingGround:
             self._drop(leg)
         if any(request.twist) and not self.places and self._way:
             self._leave()
-        return grant
+        # Where there was an edge, the ground may be missing once more.
+        return grant.at_most(1.0) if self._again and self._since < _CAREFUL else grant
 
     def _leave(self) -> None:
         """Grant all twists from now on, and remember where the edge is."""
