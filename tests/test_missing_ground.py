@@ -597,6 +597,37 @@ def test_the_edge_is_where_the_step_leads_wherever_its_foothold_was_chosen():
     assert limited(missing, 0.1, 0.0, 0.0).fraction == 0.0
 
 
+@pytest.mark.parametrize(
+    ("pace", "phase", "speed", "height", "lands"),
+    [
+        (0.0, 0.5, -0.1, -0.02, True),
+        (1.0, 0.5, -0.1, -0.02, False),
+        (0.0, 0.4, -0.1, -0.02, False),
+        (0.0, 0.5, 0.1, -0.02, False),
+        # An obstacle.
+        (0.0, 0.5, -0.1, 0.02, False),
+    ],
+)
+def test_while_the_walk_waits_a_foot_on_its_way_down_stands_on_lower_ground_that_it_meets(
+    pace, phase, speed, height, lands
+):
+    setup, rest = setup_of("strider"), rest_of("strider")
+    timing, state, lifted = StepTiming.of(setup.gait, 1.0), begun(setup, rest), np.arange(6) == 0
+    state = state._replace(
+        down=~lifted,
+        swing_phase=np.where(lifted, phase, 0.0),
+        ground_height=np.where(lifted, height, 0.0),
+        felt=[FeltFoot(speed=speed, top=0.03, top_phase=0.42), *[FeltFoot()] * 5],
+    )
+    contacts = FootContacts(6)
+    for touches in (False, True):
+        for _ in range(10):
+            contacts.step([touches, *[True] * 5], state.down.tolist(), 0.01)
+    known = contacts, GroundMap(), tarsus.WalkController(setup.robot)._walk.ground.body, MissingGround(NAMES)
+    _, landed = met_ground(state, *known, stopped=[], timing=timing, pace=pace, in_air=False)
+    assert landed == [0] * lands
+
+
 def test_a_robot_that_is_carried_away_forgets_an_obstacle():
     missing = MissingGround(NAMES)
     for _ in range(5):

@@ -11,6 +11,7 @@ from tarsus.control.terrain.foot_contacts import FootContacts
 from tarsus.control.terrain.ground_map import GroundMap
 from tarsus.control.terrain.missing_ground import MissingGround, Search, depth_allowance
 from tarsus.control.terrain.reach import Reach
+from tarsus.control.terrain.support import HALTING
 from tarsus.control.walk.felt_feet import FeltFoot
 from tarsus.control.walk.state import GaitState
 from tarsus.control.walk.step_timing import StepTiming
@@ -82,7 +83,7 @@ def met_ground(
         ):
             state = _trying_again(state, leg, missing, reach, _landed(state, leg, timing, pace))
             landed.append(leg)
-        elif phase > _LANDING:
+        elif phase > _LANDING or (pace < HALTING and _stands_below(state, leg, contacts)):
             # Contact that has not ceased since lift-off tells nothing: the foot lands where ground is expected.
             tells = contacts.lifted[leg] and not contacts.is_open(leg)
             if tells and not contacts.touches(leg):
@@ -130,6 +131,12 @@ def _collides(state: GaitState, leg: int, contacts: FootContacts) -> bool:
     # A contact is that of a moment ago, when the foot was lower.
     then = float(state.ground_height[leg]) - max(state.felt[leg].speed, 0.0) * contacts.age
     return state.felt[leg].drawn_back is None and then - float(state.start_height[leg]) > _LIFTED
+
+
+def _stands_below(state: GaitState, leg: int, contacts: FootContacts) -> bool:
+    """Return whether a foot on its way down has met ground no higher than it came from: it would lift the body."""
+    meets = contacts.estimator.touching[leg] and contacts.lifted[leg] and state.felt[leg].speed < 0.0
+    return meets and state.swing_phase[leg] >= state.felt[leg].top_phase and not _collides(state, leg, contacts)
 
 
 def _collides_again(state: GaitState, leg: int, *, side: bool, stopped: bool) -> bool:

@@ -6,7 +6,7 @@ import cmath
 import math
 from collections.abc import Sequence
 
-__all__ = ["Support", "holds"]
+__all__ = ["HALTING", "Support", "holds"]
 
 # Rates at which the pace falls and rises [1/s].
 _FALL, _RISE = 10.0, 6.0
@@ -16,8 +16,8 @@ _PATIENCE = 0.3
 _GRACE = 0.15
 # Least angle by which the centre of mass is inside the support polygon, as seen from it [rad].
 _LEAST_ANGLE = 0.02
-# Below this pace the robot waits for support.
-_HALTING = 0.5
+HALTING = 0.5
+"""Below this pace the robot waits for support."""
 
 
 def holds(feet: Sequence[complex], centre: complex) -> bool:
@@ -56,7 +56,7 @@ class Support:
     @property
     def halts(self) -> bool:
         """Whether the robot waits until its feet hold it."""
-        return self.pace < _HALTING
+        return self.pace < HALTING
 
     def holds(self, legs: list[int], places: Sequence[complex], centre: complex, *, anew: bool) -> bool:
         """Return whether feet hold the robot; they are looked at again where they are others, or when asked to.
