@@ -501,7 +501,7 @@ def test_a_switch_that_stays_open_is_told_by_a_robot_that_does_not_tip():
             contacts._balance(down, FEET, 0j, tilt, 0.01)
         return [leg for leg in range(6) if contacts.is_open(leg)]
 
-    standing, noise = [(0.0, 0.0)] * 25, np.random.default_rng(2).normal(0.0, 0.003, (25, 2)).tolist()
+    standing, noise = [(0.0, 0.0)] * 60, np.random.default_rng(2).normal(0.0, 0.003, (60, 2)).tolist()
     for still in (standing, noise):
         assert suspected(still, [False, False, False, True, False, True]) == [1]
         assert suspected(still, [False, True, False, True, False, True]) == []
@@ -510,9 +510,12 @@ def test_a_switch_that_stays_open_is_told_by_a_robot_that_does_not_tip():
         # A robot in the air has no contact at all, and one that stands on its other feet tells nothing of this one.
         assert suspected(still, [False] * 6) == []
         assert suspected(still, [True, False, True, True, True, True], [True] * 6) == []
-    # Without a foot on its left, the robot tips to the left.
-    tips = [(-3.0 * (0.01 * tick) ** 2, 0.0) for tick in range(25)]
-    assert suspected(tips, [False, False, False, True, False, True]) == []
+        # The switch of a foot that has just lost its contact works.
+        assert suspected(still[:28], [False, False, False, True, False, True]) == []
+    # Without a foot on its left, the robot tips to the left; one that tips to the right does not stand there either.
+    for way in (-1.0, 1.0):
+        tips = [(way * 3.0 * (0.01 * tick) ** 2, 0.0) for tick in range(60)]
+        assert suspected(tips, [False, False, False, True, False, True]) == []
 
 
 def test_contacts_that_come_late_cost_no_way_and_are_no_obstacles():

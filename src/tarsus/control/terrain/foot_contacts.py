@@ -25,8 +25,10 @@ _LIFTS = 0.003
 # How long other feet lose contact, while a foot that should stand has none, until its switch is taken to be open [s]; a
 # foot that lifts the body more counts for more, up to this factor.
 _OPEN_AFTER, _MOST_LIFT = 0.4, 4.0
-# How long feet that do not hold the robot bear it, until another one does [s], and how far it sinks there if not [m].
+# How long feet that do not hold the robot bear it, until another one does [s], and how far it moves there if not [m].
 _UNHELD, _TIPS = 0.15, 0.012
+# How long that one has had no contact: the switch of one that has just lost it works [s].
+_NEVER = 0.3
 # Fewer feet bear no robot, unless something else holds it.
 _FEWEST = 2
 
@@ -155,10 +157,10 @@ class FootContacts:
             return
         longest = max(missing, key=self._without.__getitem__)
         place = places[longest]
-        if self._unheld <= 0.0 or _sunk(place, tilt, self._tilt) > _TIPS:
+        if self._unheld <= 0.0 or abs(_sunk(place, tilt, self._tilt)) > _TIPS:
             self._unheld, self._tilt = 0.0, tilt
         self._unheld += dt
-        if self._unheld > _UNHELD:
+        if self._unheld > _UNHELD and self._without[longest] > _NEVER:
             self._evidence[longest], self.standing[longest] = math.inf, True
 
     def as_planned(self, readings: Sequence[bool | None] | None, down: Sequence[bool]) -> bool:

@@ -36,6 +36,8 @@ _SHORT, _PAST, _DRAWS_BACK = 0.02, 0.01, 1.0
 # A foot that is deeper, on even ground, bears no load that is not felt, whatever its shin rests on [m]; nor does one on
 # rough ground that is this deep, over the body height.
 _HANGS, _HANGS_LOW = 0.05, 0.9
+# Nor does one without contact that is this far over the expected ground, as before a wall: it is still to go down [m].
+_HIGH = 0.03
 # A foot that goes down faster has not come to the end of its reach, which sinks with the body [m/s].
 _FALLS = 0.1
 
@@ -217,22 +219,28 @@ def not_sunk(
     ground: GroundMap,
     places: Sequence[complex],
     down: Sequence[bool],
+    stands: Sequence[bool],
     *,
     roughness: float,
     tips: bool,
 ) -> list[bool]:
-    """Return which feet should stand and may bear load that is not felt: none while a leg may rest on an edge.
+    """Return which feet should stand and may bear load that is not felt.
+
+    None may while one of them is not close to the ground: its leg may rest on an edge, or lean against a wall.
 
     Parameters
     ----------
     state, ground : GaitState, GroundMap
         The gait state; where ground is expected.
-    places, down : sequence of complex, sequence of bool
-        Where the feet are, in the heading frame [m]; which should stand.
+    places, down, stands : sequence of complex, sequence of bool
+        Where the feet are, in the heading frame [m]; which should stand, and which do.
     roughness, tips : float, bool
         How far ground is off the expected one [m]; whether the robot tips or feet step back: then, none may.
     """
     most = min(_HANGS + depth_allowance(roughness), _HANGS_LOW * float(state.posture.value[2]))
-    over, feet = (state.ground_height - state.elevation + most).tolist(), enumerate(zip(down, places, strict=True))
-    near = [on and over[leg] > ground.at(place) and not ground.is_hole(place) for leg, (on, place) in feet]
+    feet = zip(places, down, stands, (state.ground_height - state.elevation).tolist(), strict=True)
+    near = [
+        on and -most < over - ground.at(place) < (math.inf if stand else _HIGH) and not ground.is_hole(place)
+        for place, on, stand, over in feet
+    ]
     return near if near == list(down) and not tips else [False] * len(near)
