@@ -101,6 +101,16 @@ def test_a_servo_that_the_ground_may_stall_is_given_longer_than_one_whose_foot_d
     assert times[1] == times[2] == times[3]
 
 
+@pytest.mark.parametrize(("touches", "torque", "fails"), [(True, 1.9, False), (False, 1.9, True), (True, 0.1, True)])
+def test_a_servo_that_pulls_as_its_foot_touches_the_ground_is_overloaded_and_has_not_failed(touches, torque, fails):
+    monitor, measured = JointMonitor(np.full((6, 3), 2.0)), np.zeros((6, 3))
+    measured[3, 1] = 0.3
+    for _ in range(500):
+        torques = [(torque,) * 3] * 6
+        monitor.step(np.zeros((6, 3)), measured.tolist(), 0.01, torques=torques, contacts=[touches] * 6)
+    assert bool(monitor.failed) is fails
+
+
 @pytest.mark.parametrize(("speed", "fails"), [(0.5, True), (2.0, False)])
 def test_a_servo_whose_joint_goes_back_to_its_command_is_not_idle(speed, fails):
     monitor, measured, torques = JointMonitor(np.full((6, 3), 2.0)), np.zeros((6, 3)), [(0.1,) * 3] * 6

@@ -11,10 +11,10 @@ from sample_gait_states import begun, rest_of, setup_of
 from tarsus.control.limitation import LimitationKind
 from tarsus.control.limiter.protocol import TwistGrant, TwistRequest
 from tarsus.control.sensing.leg_odometry import LegOdometry
-from tarsus.control.terrain.foot_contacts import FootContacts
+from tarsus.control.terrain.foot_contacts import FootContacts, Search
 from tarsus.control.terrain.ground_contact import met_ground
 from tarsus.control.terrain.ground_map import GroundMap
-from tarsus.control.terrain.missing_ground import MissingGround, Search
+from tarsus.control.terrain.missing_ground import MissingGround
 from tarsus.control.walk.felt_feet import FeltFoot
 from tarsus.control.walk.step_timing import StepTiming
 from tarsus.simulation import SimulatedPlant, terrain
@@ -36,9 +36,11 @@ def stepped(
     raised=0.0,
     dt=0.01,
     twist=(0.0, 0.0, 0.0),
+    leans=0.0,
+    lost=None,
 ):
-    sizes, missing.twist = {"height": 0.1, "roughness": roughness}, twist
-    searches = [Search(*search, sunk=sunk[search[0]], raised=raised) for search in searches]
+    sizes, missing.twist, missing.lost = {"height": 0.1, "roughness": roughness}, twist, lost
+    searches = [Search(*search, sunk=sunk[search[0]], raised=raised, leans=leans) for search in searches]
     missing.step(searches, feet, stands, dt, centre=centre, rest=REST, radii=[0.05] * 6, **sizes)
     return missing
 
@@ -560,6 +562,51 @@ def test_a_robot_that_tips_towards_a_foot_goes_back_at_once_but_not_far():
     for _ in range(100):
         stepped(missing, deep, stands=two)
     assert missing.back == 0
+
+
+def test_a_robot_that_its_feet_do_not_hold_tips_where_a_foot_has_lost_its_ground():
+    def tips(most=0.01, *, touching=(1, 4), time=0.06, tilt=(0.0, 0.1)):
+        contacts = FootContacts(6)
+        contacts.step([True] * 6, [True] * 6, 0.02)
+        contacts.find_open([True] * 6, REST, 0j, (0.0, 0.0), 0.02)
+        for _ in range(round(time / 0.02)):
+            contacts.step([leg in touching for leg in range(6)], [True] * 6, 0.02)
+            contacts.find_open([True] * 6, REST, 0j, tilt, 0.02)
+        return contacts.tips([True] * 6, REST, 0j, most)
+
+    assert tips() in (0, 5)
+    assert tips(tilt=(0.0, -0.1)) in (2, 3)
+    # Not where the other feet hold it, where it sinks by less, at once, and where it is lifted.
+    assert tips(touching=(1, 2, 3, 4, 5)) is None
+    assert tips(0.03) is None
+    assert tips(time=0.02) is None
+    assert tips(touching=()) is None
+
+
+def test_a_walk_that_tips_stops_backs_off_and_says_so():
+    missing = stepped(MissingGround(NAMES), [], stands=[True] * 6, lost=5)
+    assert missing.pace == 0.0
+    assert missing.back.real < 0 < missing.back.imag
+    assert [limit.leg for limit in missing.limitations] == ["RF"]
+    assert stepped(missing, [], stands=[True] * 6).pace == 1.0
+    assert missing.sinks(0.0) < missing.sinks(0.01)
+
+
+def test_feet_of_a_body_that_is_far_off_its_attitude_do_not_step_back():
+    # One in front hangs over the edge, or holds the body on it; one behind is in the air.
+    for depth, leans, steps, tips in ((0.08, 0.0, True, False), (0.08, 0.03, False, True), (0.08, -0.03, False, False)):
+        missing = stepped(MissingGround(NAMES), [(0, depth, False, True)], leans=leans)
+        assert bool(missing.places) is steps
+        assert bool(missing.tips) is tips
+    # On rough ground the body is off its attitude more often.
+    assert stepped(MissingGround(NAMES), [(0, 0.12, False, True)], leans=0.022, roughness=0.02).places
+
+
+def test_a_robot_whose_foot_slides_off_an_edge_as_others_lift_off_puts_them_down():
+    robot = tarsus.load_robot("makeyourpet")
+    walk = Walk(terrain.Gaps(start=0.308, width=0.2, depth=0.15, count=1), robot=robot)
+    walk.go(0.0546, 2.6)
+    assert walk.tilt < np.radians(15)
 
 
 def test_a_robot_none_of_whose_feet_stands_is_lifted_and_does_not_tip():

@@ -59,12 +59,15 @@ class PostureFeedback:
         How far the ground is out of the legs' reach in the attitude to keep [m].
     given_way : float
         Share of the slope that the body follows because the legs do not reach otherwise, 0 to 1.
+    kept : float
+        Share of a measured tilt that is turned back, 0 to 1.
     """
 
     def __init__(self, levelling: Levelling | None, *, scale: float = 1.0) -> None:
         self._scale = scale
         self._share = None if levelling is None else LEVELLING_SHARES[levelling]
         self.raised = self.short = self.given_way = 0.0
+        self.kept = 0.0 if self._share is None else 1 - self._share
         self._rests = False
 
     def fit_to_reach(

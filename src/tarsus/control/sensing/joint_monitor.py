@@ -29,7 +29,7 @@ _MOVES = 1.0
 # servo, and of one that pulls, as that of a leg does that is caught.
 _FAILED_AFTER, _MEMORY = 1.5, 2.0
 _MOST_WEIGHT, _MOST_IDLE, _MOST_PULLING = 6.0, 15.0, 1.0
-# Share that counts where the torque is not measured and the foot touches the ground, which may stall the servo.
+# Share that counts where the foot touches the ground, which may stall the servo, unless its torque tells that it idles.
 _STALLED = 0.2
 # Where the torque is not measured, a femur that the ground has pushed up by so much [rad], more than nearly any that
 # holds on, and the greatest factor then.
@@ -116,7 +116,7 @@ class JointMonitor:
         unknown = np.isnan(torque)
         most[(over[:, 1] > _GIVES_WAY) & unknown[:, 1], 1] = _MOST_GIVING_WAY
         touches = np.array([bool(on) for on in contacts or [False] * len(error)])
-        share = np.where(unknown & touches[:, None], _STALLED, 1.0)
+        share = np.where(~idle & touches[:, None], _STALLED, 1.0)
         weight = np.where(error > bound, share * np.fmin((error / bound) ** 2, most), 0.0)
         once = np.zeros_like(commanded) if stuck is None else _ONCE * stuck
         self._evidence = self._evidence * 0.5 ** (dt / _MEMORY) + np.stack([dt * weight, once])

@@ -110,6 +110,12 @@ class BodyMotion:
             self.tilt = (0.0, 0.0) if self._unmeasured <= _TIMEOUT else None
 
     @property
+    def off(self) -> tuple[float, float]:
+        """By how much the body is off the attitude to keep, roll and pitch [rad]; 0 where that follows the feet."""
+        roll, pitch = self.tilt or (0.0, 0.0)
+        return self._posture.kept * roll, self._posture.kept * pitch
+
+    @property
     def looks(self) -> bool:
         """Whether height, tilt and lost way are looked at in this tick."""
         return self.since >= _PERIOD

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import cmath
+from functools import partial
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -253,11 +254,11 @@ class FeltGround:
         stands = [(self.condition.in_air or on) and not missing.steps_back(leg, places[leg]) for leg, on in on_ground]
         missing.sees(self.ground.holes, rest)
         waits = self.condition.carried or (self._rests and self.support.held and near == down)
-        searches = [] if waits else searching_feet(state, contacts, self.ground, places, down=down, stands=stands)
-        legs, height = [search.leg for search in searches], float(state.posture.value[2])
-        raised = self.body.odometry.raised(legs, self.measured.joint_angles, self._commanded)
-        searches = [search._replace(raised=raised.get(search.leg, 0.0)) for search in searches]
+        raised = partial(self.body.odometry.raised, measured=self.measured.joint_angles, commanded=self._commanded)
+        known = self.ground, places, self.body.off, raised
+        searches = [] if waits else searching_feet(state, contacts, *known, down=down, stands=stands)
         on, radii = [on and stand for on, stand in zip(down, stands, strict=True)], footholds.placement_radii
+        missing.lost, height = contacts.tips(down, places, centre, missing.sinks(rough)), float(state.posture.value[2])
         missing.step(searches, places, on, dt, centre=centre, rest=rest, radii=radii, height=height, roughness=rough)
         # With the body higher and feet drawn in, legs are steeper beside an edge.
         self.body.roughness.landed(missing.edge)
@@ -283,8 +284,8 @@ class FeltGround:
         bears = [self.contacts.supports(leg) and leg not in self.missing.places for leg in range(len(down))]
         legs = [leg for leg, on in enumerate(down) if on and not (due and due[leg]) and bears[leg]]
         stays = self.support.holds(legs, places, centre, anew=not self.body.since)
-        lifts, fallen = any(due or ()), self.condition.fallen
-        held = due is None or (stays and not (lifts and (self.body.slope.refuses or self.missing.refuses)))
+        lifts, fallen, missing = any(due or ()), self.condition.fallen, self.missing
+        held = due is None or (stays and not (lifts and any((self.body.slope.refuses, missing.refuses, missing.tips))))
         self.support.step(stays=held and not fallen, lifts=lifts and not fallen, most=self.missing.pace, **time)
 
     @property

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from typing import NamedTuple
 
 from tarsus.control.sensing.contact_estimator import ContactEstimator
 from tarsus.control.terrain.support import holds
 
-__all__ = ["FootContacts"]
+__all__ = ["FootContacts", "Search", "sunk_at"]
 
 # A foot that has been without contact for longer has left the ground, or has lost it [s].
 _LOST = 0.03
@@ -31,6 +32,32 @@ _UNHELD, _TIPS = 0.15, 0.012
 _NEVER = 0.3
 # Fewer feet bear no robot, unless something else holds it.
 _FEWEST = 2
+
+
+class Search(NamedTuple):
+    """A foot that should stand and feels nothing.
+
+    Attributes
+    ----------
+    leg, depth : int, float
+        The leg; how far below the expected ground its foot is [m].
+    falls, lasts : bool
+        Whether the foot goes down; whether it has not searched for long.
+    sunk : float
+        By how much the body has sunk at the foot since that lost its contact [m].
+    raised : float
+        By how much the foot is higher than commanded, where that is measured [m].
+    leans : float
+        By how much the body is lower there than in the attitude to keep [m].
+    """
+
+    leg: int
+    depth: float
+    falls: bool
+    lasts: bool
+    sunk: float = 0.0
+    raised: float = 0.0
+    leans: float = 0.0
 
 
 class FootContacts:
@@ -138,7 +165,7 @@ class FootContacts:
         for leg, on in enumerate(down):
             if self._without[leg] <= 0.0 or tilt is None:
                 self._tilts[leg] = tilt or (0.0, 0.0)
-            self.sunk[leg] = _sunk(places[leg], tilt or (0.0, 0.0), self._tilts[leg])
+            self.sunk[leg] = sunk_at(places[leg], tilt or (0.0, 0.0), self._tilts[leg])
             if on and shaken and self._without[leg] > _GRACE:
                 lifts = 1.0 if tilt is None else -self.sunk[leg] / _LIFTS
                 self._evidence[leg] += dt * min(lifts, _MOST_LIFT) * (lifts >= 1.0)
@@ -157,11 +184,30 @@ class FootContacts:
             return
         longest = max(missing, key=self._without.__getitem__)
         place = places[longest]
-        if self._unheld <= 0.0 or abs(_sunk(place, tilt, self._tilt)) > _TIPS:
+        if self._unheld <= 0.0 or abs(sunk_at(place, tilt, self._tilt)) > _TIPS:
             self._unheld, self._tilt = 0.0, tilt
         self._unheld += dt
         if self._unheld > _UNHELD and self._without[longest] > _NEVER:
             self._evidence[longest], self.standing[longest] = math.inf, True
+
+    def tips(self, down: Sequence[bool], places: Sequence[complex], centre: complex, most: float) -> int | None:
+        """Return the leg at whose foot the robot tips, if it does: it sinks there, and the other feet do not hold it.
+
+        Parameters
+        ----------
+        down : sequence of bool
+            Which feet should stand.
+        places, centre : sequence of complex, complex
+            The feet and the centre of mass, x + iy in the heading frame [m].
+        most : float
+            By how much a body that does not tip sinks at a foot without contact at most [m].
+        """
+        legs = [leg for leg, on in enumerate(down) if on]
+        sinks = [leg for leg in legs if self._without[leg] > _LOST and self.sunk[leg] > most and self.is_known(leg)]
+        bears = [places[leg] for leg in legs if self._without[leg] <= _LOST or self.is_open(leg)]
+        if not (sinks and bears) or holds(bears, centre):
+            return None
+        return max(sinks, key=self.sunk.__getitem__)
 
     def as_planned(self, readings: Sequence[bool | None] | None, down: Sequence[bool]) -> bool:
         """Return whether the feet touch the ground that should, and no others, and that is certain."""
@@ -194,6 +240,14 @@ class FootContacts:
         return self._without[leg] <= grace or self.is_open(leg)
 
 
-def _sunk(place: complex, tilt: tuple[float, float], before: tuple[float, float]) -> float:
-    """Return by how much a body has sunk at a place by a change of its tilt [m]."""
+def sunk_at(place: complex, tilt: tuple[float, float], before: tuple[float, float] = (0.0, 0.0)) -> float:
+    """Return by how much a body has sunk at a place by a change of its tilt [m].
+
+    Parameters
+    ----------
+    place : complex
+        The place, x + iy in the heading frame [m].
+    tilt, before : (roll, pitch)
+        The tilt, and the one before [rad].
+    """
     return place.real * (tilt[1] - before[1]) - place.imag * (tilt[0] - before[0])

@@ -7,10 +7,11 @@ import math
 from typing import TYPE_CHECKING, Any
 
 from tarsus.control.terrain.body_motion import BodyMotion
-from tarsus.control.terrain.foot_contacts import FootContacts
+from tarsus.control.terrain.foot_contacts import FootContacts, Search, sunk_at
 from tarsus.control.terrain.ground_map import GroundMap
-from tarsus.control.terrain.missing_ground import MissingGround, Search, depth_allowance
+from tarsus.control.terrain.missing_ground import MissingGround
 from tarsus.control.terrain.reach import Reach
+from tarsus.control.terrain.roughness import depth_allowance
 from tarsus.control.terrain.support import HALTING
 from tarsus.control.walk.felt_feet import FeltFoot
 from tarsus.control.walk.state import GaitState
@@ -18,7 +19,7 @@ from tarsus.control.walk.step_timing import StepTiming
 from tarsus.control.walk.stepper import land
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Callable, Mapping, Sequence
 
 __all__ = ["met_ground", "not_sunk", "searching_feet"]
 
@@ -191,6 +192,8 @@ def searching_feet(
     contacts: FootContacts,
     ground: GroundMap,
     places: Sequence[complex],
+    off: tuple[float, float],
+    raised: Callable[[list[int]], Mapping[int, float]],
     *,
     down: Sequence[bool],
     stands: Sequence[bool],
@@ -203,14 +206,19 @@ def searching_feet(
         The gait state; the contacts.
     ground, places : GroundMap, sequence of complex
         Where ground is expected; where the feet are, in the heading frame [m].
+    off, raised : (roll, pitch), callable
+        By how much the body is off the attitude to keep [rad]; returns by how much the feet of some legs are higher
+        than commanded, of those that are measured [m].
     down, stands : sequence of bool
         Which feet should stand, and which do.
     """
-    elevation, found = state.elevation, list[Search]()
-    for leg, place in enumerate(places):
-        if down[leg] and not stands[leg] and contacts.is_known(leg):
-            depth = ground.lowest_near(place) + elevation - float(state.ground_height[leg])
-            found.append(Search(leg, depth, state.felt[leg].speed < -_FALLS, contacts.seeks(leg), contacts.sunk[leg]))
+    legs = [leg for leg, on in enumerate(down) if on and not stands[leg] and contacts.is_known(leg)]
+    found, higher = list[Search](), raised(legs)
+    for leg in legs:
+        place, foot = places[leg], state.felt[leg]
+        depth = ground.lowest_near(place) + state.elevation - float(state.ground_height[leg])
+        known = foot.speed < -_FALLS, contacts.seeks(leg), contacts.sunk[leg], higher.get(leg, 0.0)
+        found.append(Search(leg, depth, *known, sunk_at(place, off)))
     return found
 
 

@@ -4,14 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from functools import partial
-from typing import NamedTuple
 
 from tarsus.control.limitation import Limitation, LimitationKind
 from tarsus.control.limiter.protocol import TwistGrant, TwistRequest, leads_towards
+from tarsus.control.terrain.foot_contacts import Search
 from tarsus.control.terrain.obstacles import Obstacles
+from tarsus.control.terrain.roughness import depth_allowance
 from tarsus.control.terrain.support import holds
 
-__all__ = ["SLOW", "MissingGround", "Search", "depth_allowance"]
+__all__ = ["SLOW", "MissingGround"]
 
 # Depth below the expected ground at which there is none, over the body height.
 _DEEP = 0.75
@@ -23,11 +24,13 @@ _SLOWS, _STANDS, _SLOWEST = 0.005, 0.02, 0.25
 _HELD_UP, _STEP, _LOW_STEP, _HELD = 0.007, 0.5, 0.05, 0.3
 # A foot that lifts the body by more stands on ground that is not felt: the robot does not tip towards it [m].
 _LIFTS = 0.008
+# A robot that its feet do not hold tips where it sinks by more than the first. A foot where it is off its attitude by
+# more than the second does not step back: it holds the body, or is in the air by its tilt [m].
+_SINKS, _LEANS = 0.01, 0.02
 # A walk that is slower says why.
 SLOW = 0.85
-# How much deeper ground may be on rough ground: over the roughness, and at most [m]; from which roughness on it is not
-# sure that there is none [m].
-_ROUGH, _ROUGHEST, _UNSURE = 2.5, 0.03, 0.005
+# From which roughness on it is not sure that there is no ground [m].
+_UNSURE = 0.005
 # Where a foot steps back to, from its rest foothold against its way, over how far from there it may stand; with the
 # last, the body backs off as far as it may.
 _BACK = (0.4, 1.0, 1.0)
@@ -43,29 +46,6 @@ _SHALLOW = 0.02
 # time without holes that, and which edge the robot has left, is forgotten [s]; for how long such a walk makes up for no
 # lost time [s].
 _AGAIN, _WAITS, _FORGETS, _CAREFUL = 2, 1.0, 6.0, 1.5
-
-
-class Search(NamedTuple):
-    """A foot that should stand and feels nothing.
-
-    Attributes
-    ----------
-    leg, depth : int, float
-        The leg; how far below the expected ground its foot is [m].
-    falls, lasts : bool
-        Whether the foot goes down; whether it has not searched for long.
-    sunk : float
-        By how much the body has sunk at the foot since that lost its contact [m].
-    raised : float
-        By how much the foot is higher than commanded, where that is measured [m].
-    """
-
-    leg: int
-    depth: float
-    falls: bool
-    lasts: bool
-    sunk: float = 0.0
-    raised: float = 0.0
 
 
 class MissingGround:
@@ -94,6 +74,8 @@ class MissingGround:
         Commanded depth of a foot that steps back from where its leg may rest on the edge of a step [m]; 0 without one.
     twist : sequence of float
         How the robot walks [m/s, m/s, rad/s].
+    lost : int or None
+        Leg at whose foot a robot tips that its other feet do not hold.
     stranded : list of int
         Legs whose feet have found no ground at any place, of a robot that is to leave the edge: they step first.
     """
@@ -102,6 +84,7 @@ class MissingGround:
         self.obstacles, self.places, self.stranded = Obstacles(scale), dict[int, complex](), list[int]()
         self.pace, self.back, self.tips, self.edge, self.refuses = 1.0, 0j, 0j, 0.0, False
         self._names, self._scale, self._tries, self._cause = names, scale, [0] * len(names), ("", "")
+        self.lost: int | None = None
         # How long feet that hang have been held up by their legs [s].
         self._held = dict[int, float]()
         self._way, self._left, self._backed, self._again, self._since, self._slows = 0j, 0j, 0.0, 0, 0.0, ""
@@ -129,6 +112,10 @@ class MissingGround:
     def tries(self, leg: int, foot: complex) -> bool:
         """Return whether a foot, here in the heading frame, is on its way past an obstacle."""
         return self.obstacles.tries(leg) and self.steps_back(leg, foot)
+
+    def sinks(self, roughness: float) -> float:
+        """Return by how much the body sinks at a foot without contact at most, if the robot does not tip [m]."""
+        return depth_allowance(roughness, self._scale) + self._scale * _SINKS
 
     def gives_up(self, leg: int) -> bool:
         """Return whether a foot has found no ground at any place."""
@@ -171,13 +158,17 @@ class MissingGround:
         for leg in [leg for leg in self.places if leg not in searching or leg in past]:
             self._drop(leg)
             self._tries[leg] = 0
-        self.pace, self.back, self._slows, self.edge = 1.0 - self.refuses, 0j, "", 0.0
-        rough, self.tips, before, self._held = depth_allowance(roughness, self._scale), 0j, self._held, {}
+        self.pace, self.back, self.tips, self._slows, self.edge = 1.0 - self.refuses, 0j, 0j, "", 0.0
+        if self.lost is not None:
+            self._tip(feet[self.lost] / abs(feet[self.lost]))
+            self.pace, self._slows = 0.0, self._names[self.lost]
+        rough, before, self._held = depth_allowance(roughness, self._scale), self._held, {}
         slows, deep = rough + self._scale * _SLOWS, rough + self._scale * _STANDS
         standing = [foot for foot, on in zip(feet, stands, strict=True) if on]
         # A robot none of whose feet stands is being lifted.
         held = not (searches and standing) or holds(standing, centre)
-        for leg, depth, falls, lasts, sunk, raised in searches:
+        for search in searches:
+            leg, depth, falls, lasts, _, raised, leans = search
             way = self._to_edge(feet[leg], rest[leg])
             slowest = 0.0 if falls else _SLOWEST
             pace = max(1 - (depth - slows) / (deep - slows), slowest)
@@ -188,7 +179,9 @@ class MissingGround:
             long = not lasts or self._held[leg] > _HELD
             hangs = not falls and depth > deep if leg in self.places else long
             missing = depth - max(raised, 0.0) > _DEEP * height + rough or hangs
-            self._tip(way, tips=sunk > deep or (not held and sunk > -_LIFTS and depth + max(sunk, 0.0) > deep))
+            missing &= abs(leans) < max(self._scale * _LEANS, rough)
+            if _tips(search, deep, held=held):
+                self._tip(way)
             if missing and not (self.steps_back(leg, feet[leg]) or self.gives_up(leg)):
                 self.edge = depth if held_up else self.edge
                 self._step_back(leg, depth, way, rest[leg], radii[leg], sure=max(roughness, self.edge) <= _UNSURE)
@@ -223,12 +216,11 @@ class MissingGround:
         self._cause = self._names[leg], "the ground is lower than the leg reaches" if shallow else reached
         self._again += _AGAIN if sure and not shallow else 0
 
-    def _tip(self, way: complex, *, tips: bool) -> None:
-        """Take note that the robot tips this way, if it does: no foot tries to get past an obstacle then."""
-        if tips:
-            self.tips = way
-            for leg in self.obstacles.legs:
-                self._drop(leg)
+    def _tip(self, way: complex) -> None:
+        """Take note that the robot tips this way: no foot tries to get past an obstacle then."""
+        self.tips = way
+        for leg in self.obstacles.legs:
+            self._drop(leg)
 
     def _drop(self, leg: int) -> None:
         """Forget what has stopped a foot, and where it is to stand."""
@@ -283,15 +275,10 @@ class MissingGround:
         self._way, self._since = 0j, 0.0
 
 
-def depth_allowance(roughness: float, scale: float = 1.0) -> float:
-    """Return how much deeper ground may be where the ground is rough [m].
-
-    Parameters
-    ----------
-    roughness, scale : float
-        How far ground is off the expected one [m]; by how much lengths are smaller than given, on short legs, 0 to 1.
-    """
-    return min(_ROUGH * roughness, scale * _ROUGHEST)
+def _tips(search: Search, deep: float, *, held: bool) -> bool:
+    """Return whether a robot tips towards a foot without contact; held by the others, only if it sinks or leans far."""
+    unheld = not held and search.sunk > -_LIFTS and search.depth + max(search.sunk, 0.0) > deep
+    return search.sunk > deep or unheld or min(search.leans, search.depth) > deep
 
 
 def _way(off: complex, rest: complex) -> complex:

@@ -9,7 +9,7 @@ from tarsus.errors import InputError
 from tarsus.gait.walk_setup import require_number
 from tarsus.representation import represented
 
-__all__ = ["GroundAdaptation", "Roughness"]
+__all__ = ["GroundAdaptation", "Roughness", "depth_allowance"]
 
 # Roughness that a collision stands for [m].
 _COLLISION = 0.02
@@ -21,6 +21,8 @@ _MEMORY = 4.0
 _ROUGH, _ROUGHEST = 0.02, 0.04
 # Roughness at which cycles are as on even ground again: legs reach less high and low in long strokes [m].
 _HIGH = 0.05
+# How much deeper ground may be where it is rough: over the roughness, and at most [m].
+_DEEPER, _DEEPEST = 2.5, 0.03
 # Stance, cycle and speed change in steps of this share: each has limits computed anew.
 _STEPS = 4
 
@@ -146,3 +148,14 @@ class Roughness:
         """Return where the roughness is between two values, 0 to 1."""
         share = (self.value / self._scale - least) / (most - least)
         return min(max(round(_STEPS * share) / _STEPS, 0.0), 1.0)
+
+
+def depth_allowance(roughness: float, scale: float = 1.0) -> float:
+    """Return how much deeper ground may be where the ground is rough [m].
+
+    Parameters
+    ----------
+    roughness, scale : float
+        How far ground is off the expected one [m]; by how much lengths are smaller than given, on short legs, 0 to 1.
+    """
+    return min(_DEEPER * roughness, scale * _DEEPEST)
