@@ -102,7 +102,7 @@ def test_feet_at_the_end_of_their_reach_are_not_pushed_beyond_it():
     posture = PostureFeedback("level")
     free = posture.rates(FootPlane(0.05), (0.1, 0.1), 0j, feet=[(foot, 0.2) for foot in FEET])
     assert free.climb == pytest.approx(0.1)
-    assert free.turn == pytest.approx((0.15, 0.15))
+    assert free.turn == pytest.approx((0.3, 0.3))
     ended = posture.rates(FootPlane(0.05), (0.1, 0.1), 0j, feet=[(foot, 0.0) for foot in FEET])
     assert ended.climb == 0.0
     assert ended.turn == (0.0, 0.0)
@@ -455,6 +455,26 @@ def test_feet_go_down_sooner_where_contacts_are_known_late():
         for late in (0.0, 0.05, 1.0)
     ]
     assert speeds == pytest.approx([-0.06 / 0.25, -0.06 / 0.2, -0.06 / 0.1])
+
+
+@pytest.mark.parametrize(("pace", "turn"), [(1.0, 0.12), (0.5, 0.08), (0.0, 0.04)])
+def test_a_body_whose_walk_waits_turns_back_more_slowly(pace, turn):
+    feet = [(foot, 0.2) for foot in FEET]
+    rates = PostureFeedback("level").rates(FootPlane(), (0.02, 0.0), 0j, feet=feet, pace=pace)
+    assert rates.turn == pytest.approx((turn, 0.0))
+
+
+@pytest.mark.parametrize("ticks", range(90, 94))
+def test_the_body_turns_by_the_newest_attitude_in_each_tick(ticks):
+    controller = WalkController(STRIDER)
+    for tick in range(ticks + 1):
+        readings = SensorReadings(contacts=controller.contacts, attitude=(0.04 * (tick == ticks), 0.0))
+        controller.step((0.1, 0.0, 0.0), 0.01, readings=readings)
+    state = controller._tick.gait
+    aside = [(float(state.foot[leg].imag), state.felt[leg].speed) for leg in np.flatnonzero(state.down)]
+    assert len(aside) >= 3
+    for left, speed in aside:
+        assert speed == pytest.approx(0.24 * left, rel=0.01)
 
 
 @pytest.mark.parametrize("ticks", [1, 8])

@@ -18,11 +18,13 @@ LEVELLING_SHARES = {"level": 0.0, "between": 0.5, "follow": 1.0}
 
 # Gains [1/s] and greatest rates of height [m/s] and tilt [rad/s]; without a measured attitude the tilt follows slower.
 _HEIGHT_GAIN, _MOST_CLIMB = 2.5, 0.1
-_TILT_GAIN, _MOST_TURN, _UNMEASURED_GAIN = 2.0, 0.15, 0.5
+_TILT_GAIN, _MOST_TURN, _UNMEASURED_GAIN = 6.0, 0.3, 0.5
+# Share of gain and greatest rate of tilt that is left where the walk waits: the body would go after feet in holes.
+_WAITING = 1 / 3
 # Speed with which a foot may approach the end of its reach, over the distance from there [1/s].
 _BARRIER = 8.0
 # A standing body rests once climb [m/s] and turn [rad/s] are below the first, until they are above the second.
-_RESTS, _MOVES = (0.01, 0.02), (0.05, 0.06)
+_RESTS, _MOVES = (0.01, 0.06), (0.05, 0.18)
 # How fast the height to keep changes [m/s], and how much of the body height it may be lower.
 _RAISING, _LOWERING, _MOST_LOWER = 0.08, 0.2, 0.25
 
@@ -112,6 +114,7 @@ class PostureFeedback:
         *,
         feet: Sequence[tuple[complex, float]],
         stands: bool = False,
+        pace: float = 1.0,
     ) -> PostureRates:
         """Return how the body is to move.
 
@@ -127,22 +130,25 @@ class PostureFeedback:
             The feet that stand, at least one: where, x + iy in the heading frame, and how much lower they could be [m].
         stands : bool
             Whether the body is to stand still: feet that are moved under their load slide down a slope.
+        pace : float
+            Rate of the walk, 0 to 1: where it waits, feet look for the ground, and the body turns more slowly.
         """
         fastest = self._scale * _MOST_CLIMB
         climb = min(max(_HEIGHT_GAIN * (plane.height + self.raised), -fastest), fastest)
         climb += plane.slope_x * velocity.real + plane.slope_y * velocity.imag
+        quick = _WAITING + (1 - _WAITING) * pace
         along = (-math.atan(plane.slope_y), math.atan(plane.slope_x))
         if tilt is None or self._share is None:
             turn = [_UNMEASURED_GAIN * angle for angle in along]
         else:
             share = max(self._share, self.given_way)
-            turn = [_TILT_GAIN * ((1 - share) * a + share * b) for a, b in zip(tilt, along, strict=True)]
-        roll, pitch = (min(max(rate, -_MOST_TURN), _MOST_TURN) for rate in turn)
+            turn = [quick * _TILT_GAIN * ((1 - share) * a + share * b) for a, b in zip(tilt, along, strict=True)]
+        roll, pitch = (min(max(rate, -quick * _MOST_TURN), quick * _MOST_TURN) for rate in turn)
         # The nearer a foot is to the end of its reach, the slower it goes there.
         sinks = [(pitch * place.real - roll * place.imag, _BARRIER * margin) for place, margin in feet]
         share = min([1.0, *(max(most, 0.0) / speed for speed, most in sinks if speed > 0)])
         roll, pitch = share * roll, share * pitch
         climb = min(climb, *(most - share * speed for speed, most in sinks))
         climb, most = max(climb, -2 * fastest), _MOVES if self._rests else _RESTS
-        self._rests = stands and abs(climb) < most[0] and math.hypot(roll, pitch) < most[1]
+        self._rests = stands and abs(climb) < most[0] and math.hypot(roll, pitch) < quick * most[1]
         return PostureRates(0.0, (0.0, 0.0)) if self._rests else PostureRates(climb, (roll, pitch))

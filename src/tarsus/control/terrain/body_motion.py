@@ -89,6 +89,9 @@ class BodyMotion:
         self.rates, self.drift, self.lowered = PostureRates(0.0, (0.0, 0.0)), 0j, 0.0
         self.tilt: tuple[float, float] | None = None
         self.heading = HeadingFeedback()
+        # What the body moved by when it was looked at: its velocity, the feet and how much lower they could be, whether
+        # it is to stand still, the pace of the walk.
+        self._moves: tuple[complex, list[tuple[complex, float]], bool, float] | None = None
         self.since, self._unmeasured = _PERIOD, 0.0
 
     def see(self, attitude: tuple[float, float] | None, state: GaitState, dt: float) -> None:
@@ -108,6 +111,25 @@ class BodyMotion:
             self.tilt, self._unmeasured = (attitude[0] - roll, attitude[1] - pitch), 0.0
         elif self.tilt is not None and self._unmeasured > _HOLDS:
             self.tilt = (0.0, 0.0) if self._unmeasured <= _TIMEOUT else None
+
+    def level(self, attitude: tuple[float, float] | None, state: GaitState) -> None:
+        """Turn by the newest attitude between two looks: feet that take over load tilt the body sooner.
+
+        Parameters
+        ----------
+        attitude : (roll, pitch) or None
+            Measured [rad]; None where it is not.
+        state : GaitState
+            The gait state.
+        """
+        if attitude is not None and self._moves is not None and not self.looks:
+            self.see(attitude, state, 0.0)
+            self._turn(*self._moves)
+
+    def _turn(self, velocity: complex, feet: list[tuple[complex, float]], stands: bool, pace: float) -> None:
+        """Decide how the body is to move over feet that could be so much lower."""
+        plane, tilt = self._ground.plane, self.tilt
+        self.rates = self._posture.rates(plane, tilt, velocity, feet=feet, stands=stands, pace=pace)
 
     @property
     def off(self) -> tuple[float, float]:
@@ -160,7 +182,7 @@ class BodyMotion:
         bears = [leg for leg, on in enumerate(down) if on and contacts.touches(leg)]
         self.reach.update(state.posture.value, rest, twist, timing.stance_time)
         if not bears:
-            self.rates, self.drift = PostureRates(0.0, (0.0, 0.0)), 0j
+            self.rates, self.drift, self._moves = PostureRates(0.0, (0.0, 0.0)), 0j, None
             self.heading.forget()
             return
         self._ground.step([(places[leg], over[leg]) for leg in bears], self.tilt, state, dt, drift=self.drift)
@@ -181,7 +203,8 @@ class BodyMotion:
         self.stopped.step(measured.joint_angles, torques, bears, along, dt, tilt=tilt)
         margins = [(places[leg], over[leg] - (self.reach.lowest[leg] + self.lowered)) for leg in bears]
         stands = self.slope.refuses or not twist.any()
-        self.rates = self._posture.rates(self._ground.plane, self.tilt, velocity, feet=margins, stands=stands)
+        self._moves = velocity, margins, stands, pace
+        self._turn(*self._moves)
 
     def _fit_height(
         self,
