@@ -183,12 +183,13 @@ def test_roughness_rises_at_once_falls_slowly_and_is_bounded():
     assert roughness.swing_rise == 0.03
     roughness.decay(4.0)
     assert roughness.value == pytest.approx(0.092 / math.e)
-    assert (roughness.drawn_in, roughness.cycle_time, roughness.speed) == pytest.approx((0.02, 1.1875, 0.775))
+    assert (roughness.drawn_in, roughness.cycle_time(), roughness.speed) == pytest.approx((0.02, 1.1875, 0.775))
     for value, cycle_time in ((0.04, 1.25), (0.045, 1.125), (0.05, 1.0), (0.1, 1.0)):
         roughness.value = value
-        assert (roughness.cycle_time, roughness.speed) == pytest.approx((cycle_time, 0.7))
+        assert (roughness.cycle_time(), roughness.speed) == pytest.approx((cycle_time, 0.7))
+        assert roughness.cycle_time(on_slope=1.125) == pytest.approx(cycle_time)
     roughness.decay(20.0)
-    assert (roughness.drawn_in, roughness.cycle_time, roughness.speed) == (0.0, 1.0, 1.0)
+    assert (roughness.drawn_in, roughness.cycle_time(), roughness.speed) == (0.0, 1.0, 1.0)
     for name, value in (("cycle_time", 0.9), ("catch_up", 0.5), ("speed", 0), ("speed", 1.2), ("drawn_in", math.nan)):
         with pytest.raises(tarsus.TarsusError, match=f"{name} is {value}"):
             tarsus.GroundAdaptation(**{name: value})

@@ -117,6 +117,14 @@ def test_feet_come_closer_to_the_height_of_the_middle_of_the_body_on_slopes(name
     assert not stance.shift.any()
 
 
+@pytest.mark.parametrize(("slope", "most", "longer"), [(0.0, 1.25, 1.0), (0.2, 1.25, 1.125), (0.2, 1.0, 1.0)])
+def test_steps_are_longer_and_fewer_on_slopes(slope, most, longer):
+    controller = WalkController(preset("strider"), adaptation=GroundAdaptation(cycle_time=most))
+    controller._walk.ground.body.stance.uphill = complex(slope, 0.0)
+    controller.step((0.05, 0.0, 0.0), 0.01)
+    assert controller._walk.transitions.lengthened == pytest.approx(longer)
+
+
 def test_the_body_is_raised_where_it_would_touch_a_slope():
     stance, plane = SlopeStance(preset("strider")), FootPlane(0.0, 0.4, 0.0)
     assert stance.least_raise(FootPlane(), 0.02) <= 0.0

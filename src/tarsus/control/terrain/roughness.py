@@ -41,8 +41,8 @@ class GroundAdaptation:
     drawn_in : float
         How far feet may be drawn in, so that legs reach higher and lower [m].
     cycle_time : float
-        Greatest cycle time on rough ground, over the one on even ground: fewer and longer steps slip less, but legs
-        reach less high and low in them.
+        Greatest cycle time on rough ground and slopes, over that on even ground: fewer and longer steps slip less,
+        but legs reach less high and low in them.
     speed : float
         Greatest speed on rough ground, over the top speed on even ground.
     catch_up : float
@@ -133,11 +133,17 @@ class Roughness:
         """How far feet are drawn in [m]."""
         return self._share(0.0, _ROUGH) * self.adaptation.drawn_in
 
-    @property
-    def cycle_time(self) -> float:
-        """Cycle time over that on even ground."""
-        share = self._share(_ROUGH, _ROUGHEST) - self._share(_ROUGHEST, _HIGH)
-        return 1 + share * (self.adaptation.cycle_time - 1)
+    def cycle_time(self, on_slope: float = 1.0) -> float:
+        """Return the cycle time over that on even ground.
+
+        Parameters
+        ----------
+        on_slope : float
+            What it is at least on a slope, as far as it may change.
+        """
+        most = self.adaptation.cycle_time
+        longer = max(self._share(_ROUGH, _ROUGHEST) * (most - 1), min(on_slope, most) - 1)
+        return 1 + longer * (1 - self._share(_ROUGHEST, _HIGH))
 
     @property
     def speed(self) -> float:

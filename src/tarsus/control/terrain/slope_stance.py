@@ -19,6 +19,9 @@ __all__ = ["SlopeStance"]
 _LEAST, _MOST = math.radians(6.0), math.radians(14.0)
 # How far legs turn about their coxa axes [rad]; how far feet are drawn in, over the length of femur and tibia.
 _TURNED, _DRAWN_IN = math.radians(30.0), 0.13
+# Cycle time on a slope on which the stance changes, over that on level ground: feet slide down a slope with each step,
+# and longer ones are fewer.
+_LONGER = 1.125
 # Part of its axis by which a leg points downhill whose foot is drawn in as far as any.
 _DOWNHILL = 2 / 3
 # Smaller changes wait: while the robot walks, and while it would step for them alone [m].
@@ -50,6 +53,11 @@ class SlopeStance:
         self._mounts: Complex[np.ndarray, "legs"] = np.asarray(g.mount_x + 1j * g.mount_y)
         self._drawn_in: Float[np.ndarray, "legs"] = np.asarray(_DRAWN_IN * (g.femur + g.tibia))
         self.half = (0.0, 0.0, 0.0) if size is None else tuple((np.asarray(size) / 2).tolist())
+
+    @property
+    def cycle_time(self) -> float:
+        """Cycle time over that on level ground."""
+        return _LONGER if self.uphill else 1.0
 
     def step(
         self, level: FootPlane, rest: Complex[np.ndarray, "legs"], drawn_in: float = 0.0, *, walks: bool = True

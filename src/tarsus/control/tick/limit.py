@@ -25,7 +25,7 @@ def twist_limiters(walk: WalkComponents) -> list[TwistLimiter]:
     walk : WalkComponents
         The components.
     """
-    ground, roughness = walk.ground, walk.ground.body.roughness
+    ground, roughness, stance = walk.ground, walk.ground.body.roughness, walk.ground.body.stance
 
     def rate(twist: Sequence[float]) -> float | None:
         if ground.condition.carried:
@@ -38,7 +38,9 @@ def twist_limiters(walk: WalkComponents) -> list[TwistLimiter]:
         LostTime(roughness.adaptation.catch_up, rate),
         walk.ground.missing,
         walk.ground.body.stopped,
-        WorkspaceLimiter(walk.robot.leg_names, walk.transitions, lambda: (roughness.cycle_time, roughness.speed)),
+        WorkspaceLimiter(
+            walk.robot.leg_names, walk.transitions, lambda: (roughness.cycle_time(stance.cycle_time), roughness.speed)
+        ),
         PendingTransitionLimiter(walk.transitions),
         GovernorLimiter(walk.transitions, lambda: walk.ground.body.looks),
     ]
