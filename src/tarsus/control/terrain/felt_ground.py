@@ -251,13 +251,13 @@ class FeltGround:
         if self.condition.carried:
             missing.forget()
             self.ground.plane = FootPlane()
-        on_ground = enumerate(contacts.standing)
-        stands = [(self.condition.in_air or on) and not missing.steps_back(leg, places[leg]) for leg, on in on_ground]
+        held = [self.condition.in_air or on for on in contacts.standing]
+        stands = [on and not missing.steps_back(leg, places[leg]) for leg, on in enumerate(held)]
         missing.sees(self.ground.holes, rest)
         waits = self.condition.carried or (self._rests and self.support.held and near == down)
         raised = partial(self.body.odometry.raised, measured=self.measured.joint_angles, commanded=self._commanded)
-        known = self.ground, places, self.body.off, raised
-        searches = [] if waits else searching_feet(state, contacts, *known, down=down, stands=stands)
+        known = state, contacts, self.ground, places, self.body.off, raised
+        searches = [] if waits else searching_feet(*known, down=down, stands=stands)
         on, radii = [on and stand for on, stand in zip(down, stands, strict=True)], footholds.placement_radii
         missing.lost, height = contacts.tips(down, places, centre, missing.sinks(rough)), float(state.posture.value[2])
         missing.step(searches, places, on, dt, centre=centre, rest=rest, radii=radii, height=height, roughness=rough)
