@@ -42,10 +42,8 @@ __all__ = ["FeltGround"]
 _DEPTH_SHARE = 0.6
 # Fraction of the swing in which a foot travels, up to half the longest stroke and with the longest one.
 _SLOW_TRAVEL, _FAST_TRAVEL = 0.75, 0.92
-# How soon feet lift off that are not lowered any more [s].
-_LEAVING = 0.1
-# Lag of the joints of usual servos [s]: slower ones make contacts late.
-_USUAL_LAG = 0.03
+# How soon feet lift off that are not lowered any more; lag of the joints of usual servos: more makes contacts late [s].
+_LEAVING, _USUAL_LAG = 0.1, 0.03
 # Speed with which feet look for the ground while others hold a robot that stands [m/s], and how far below the expected
 # ground [m]: faster or lower ones push the body off the others.
 _GENTLE, _NEAR = 0.02, 0.004
