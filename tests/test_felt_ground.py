@@ -458,10 +458,13 @@ def test_feet_go_down_sooner_where_contacts_are_known_late():
     assert speeds == pytest.approx([-0.06 / 0.25, -0.06 / 0.2, -0.06 / 0.1])
 
 
-@pytest.mark.parametrize(("pace", "turn"), [(1.0, 0.12), (0.5, 0.08), (0.0, 0.04)])
-def test_a_body_whose_walk_waits_turns_back_more_slowly(pace, turn):
+@pytest.mark.parametrize(
+    ("pace", "slope", "turn"),
+    [(1.0, 0.0, 0.12), (0.5, 0.0, 0.08), (0.0, 0.0, 0.04), (1.0, 0.19, 0.08), (0.5, 0.4, 0.04)],
+)
+def test_a_body_turns_back_more_slowly_where_the_walk_waits_and_on_slopes(pace, slope, turn):
     feet = [(foot, 0.2) for foot in FEET]
-    rates = PostureFeedback("level").rates(FootPlane(), (0.02, 0.0), 0j, feet=feet, pace=pace)
+    rates = PostureFeedback("level").rates(FootPlane(0.0, slope, 0.0), (0.02, 0.0), 0j, feet=feet, pace=pace)
     assert rates.turn == pytest.approx((turn, 0.0))
 
 

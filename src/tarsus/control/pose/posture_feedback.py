@@ -19,8 +19,9 @@ LEVELLING_SHARES = {"level": 0.0, "between": 0.5, "follow": 1.0}
 # Gains [1/s] and greatest rates of height [m/s] and tilt [rad/s]; without a measured attitude the tilt follows slower.
 _HEIGHT_GAIN, _MOST_CLIMB = 2.5, 0.1
 _TILT_GAIN, _MOST_TURN, _UNMEASURED_GAIN = 6.0, 0.3, 0.5
-# Share of gain and greatest rate of tilt that is left where the walk waits: the body would go after feet in holes.
-_WAITING = 1 / 3
+# Share of gain and greatest rate of tilt that is left where the walk waits, as the body would go after feet in holes,
+# and on slopes, where feet that are moved under their load slip; from which to which slope both become less.
+_SLOW, _SLOPES = 1 / 3, (0.14, 0.24)
 # Speed with which a foot may approach the end of its reach, over the distance from there [1/s].
 _BARRIER = 8.0
 # A standing body rests once climb [m/s] and turn [rad/s] are below the first, until they are above the second.
@@ -136,7 +137,8 @@ class PostureFeedback:
         fastest = self._scale * _MOST_CLIMB
         climb = min(max(_HEIGHT_GAIN * (plane.height + self.raised), -fastest), fastest)
         climb += plane.slope_x * velocity.real + plane.slope_y * velocity.imag
-        quick = _WAITING + (1 - _WAITING) * pace
+        even = (_SLOPES[1] - math.hypot(plane.slope_x, plane.slope_y)) / (_SLOPES[1] - _SLOPES[0])
+        quick = _SLOW + (1 - _SLOW) * min(pace, max(even, 0.0))
         along = (-math.atan(plane.slope_y), math.atan(plane.slope_x))
         if tilt is None or self._share is None:
             turn = [_UNMEASURED_GAIN * angle for angle in along]
