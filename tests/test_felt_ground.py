@@ -382,6 +382,14 @@ def test_a_foot_that_steps_down_a_slope_rises_over_the_middle_of_its_way():
         assert foot.top == pytest.approx(top)
 
 
+def test_a_foot_clears_the_ground_that_it_leaves_where_lower_one_is_too_far_to_be_reached_in_its_swing():
+    felt = FeltInputs([], [], [], 0.0, 0.0, (0.0, 0.0), 0j, 0.0, 0j, 0.8, 1.0, 0.03, 0.2, 0.0, {})
+    for expected, top in ((-0.02, 0.015), (-0.04, 0.01)):
+        under = GroundUnder(expected, lowest=-0.2, highest=0.2)
+        _, foot = _swinging(0.0, FeltFoot(), under, felt, 0.01, (0.0, 0.3, 0.0, 0j))
+        assert foot.top == pytest.approx(top)
+
+
 @pytest.mark.parametrize("raised_at", [0.0, 0.2, 0.3, 0.4, 0.415])
 def test_a_foot_is_not_thrown_up_by_a_swing_that_becomes_higher(raised_at):
     felt = FeltInputs([], [], [], 0.0, 0.0, (0.0, 0.0), 0j, 0.0, 0j, 0.8, 1.0, 0.03, 1.0, 0.0, {})

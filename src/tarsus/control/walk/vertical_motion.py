@@ -20,6 +20,8 @@ _STILL = FeltFoot()
 _TOP_PHASE, _ROUGH_TOP_PHASE = 0.42, 0.45
 # Mean speed up to a top that changes on the way, at most: a foot close to it would be thrown up [m/s].
 _FASTEST_RISE = 0.5
+# Least rise over where a foot lifted off, over the swing height: less, and it drags on the ground as the body sinks.
+_LEAST_RISE = 0.5
 # Where the ground rises soon: up to which swing phase a foot may begin to rise before it travels, and its top's phase.
 _RISING_FIRST, _STEEP_TOP_PHASE = 0.15, 0.35
 # Fraction of a swing in which a foot goes down from its top to the expected ground, on rough ground, and at least where
@@ -150,7 +152,8 @@ def _swinging(
         # No higher than the foot can be there in time, and down again by the end of its swing.
         top_phase = _TOP_PHASE + rough * (_ROUGH_TOP_PHASE - _TOP_PHASE)
         rises = height + _FASTEST_RISE * (top_phase - phase) * swing_time
-        fits = min(under.expected - felt.depth + felt.lowering * part * swing_time, rises)
+        falls = under.expected - felt.depth + felt.lowering * part * swing_time
+        fits = min(max(falls, lifted_at + _LEAST_RISE * felt.swing_height), rises)
         start = lifted_at - _BEHIND * max(lifted_at - under.expected, 0.0)
         over = max(start, under.expected, under.way) + felt.swing_height
         top = max(min(over, under.highest, fits), height)
