@@ -159,6 +159,13 @@ def test_the_body_backs_off_until_feet_away_from_the_edge_hold_it():
     assert missing.back == 0
 
 
+def test_the_body_does_not_back_off_over_a_foot_that_finds_no_ground_behind_it():
+    ahead, behind = (stepped(MissingGround(NAMES), [(leg, 0.08, True, True)], twist=(0.1, 0.0, 0.0)) for leg in (0, 2))
+    assert ahead.back.real < 0
+    assert behind.places.keys() == {2}
+    assert behind.back == 0
+
+
 def test_a_twist_over_the_edge_is_refused_and_any_other_is_granted():
     missing = MissingGround(NAMES)
     assert limited(missing, 0.1, 0.0, 0.0).fraction == 1.0

@@ -101,8 +101,7 @@ class MissingGround:
 
     def forget(self) -> None:
         """Forget holes and obstacles: the robot is carried elsewhere."""
-        self.obstacles, self._tries = Obstacles(self._scale), [0] * len(self._names)
-        self.places.clear()
+        self.obstacles, self._tries, self.places = Obstacles(self._scale), [0] * len(self._names), {}
         self._way, self._left, self.refuses, self._again = 0j, 0j, False, 0
 
     def steps_back(self, leg: int, foot: complex) -> bool:
@@ -198,10 +197,12 @@ class MissingGround:
                 self._again, self.obstacles.found = 0, 0j
             return
         self.pace, self._slows, turn = _SLOWEST * bool(self.stranded), "", self._way.conjugate()
-        edge = min((feet[leg] * turn).real for leg in self.places) - self._scale * _FIRM
+        along = [(feet[leg] * turn).real for leg in self.places]
+        edge = min(along) - self._scale * _FIRM
         firm = [foot for foot, on in zip(feet, stands, strict=True) if on and (foot * turn).real < edge]
         enough = max(self._tries) < len(_BACK) and holds(firm, centre + self._scale * _MARGIN * self._way)
-        if backed and not (self.obstacles.legs or enough):
+        # From a foot behind the body, it would back off over the hole.
+        if backed and max(along) > (centre * turn).real and not (self.obstacles.legs or enough):
             self.back = -speed * self._way
             self._backed += speed * dt
 
