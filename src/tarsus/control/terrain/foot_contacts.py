@@ -132,7 +132,7 @@ class FootContacts:
             if not on:
                 self._settled[leg] = 0.0
             self.lifted[leg] = not on and (self.lifted[leg] or self._without[leg] > _LOST)
-        self.standing = [t <= _LOST or e > _OPEN_AFTER for t, e in zip(self._without, self._evidence, strict=True)]
+        self.standing = [self._bears(leg) for leg in range(len(down))]
         for leg, leaves in enumerate(leaving or ()):
             stays = rests or (leaves and self._without[leg] < _LEAVES)
             self.standing[leg] = self.standing[leg] or (stays and self._settled[leg] > _SETTLED)
@@ -203,8 +203,8 @@ class FootContacts:
             By how much a body that does not tip sinks at a foot without contact at most [m].
         """
         legs = [leg for leg, on in enumerate(down) if on]
-        sinks = [leg for leg in legs if self._without[leg] > _LOST and self.sunk[leg] > most and self.is_known(leg)]
-        bears = [places[leg] for leg in legs if self._without[leg] <= _LOST or self.is_open(leg)]
+        sinks = [leg for leg in legs if not self._bears(leg) and self.sunk[leg] > most and self.is_known(leg)]
+        bears = [places[leg] for leg in legs if self._bears(leg)]
         if not (sinks and bears) or holds(bears, centre):
             return None
         return max(sinks, key=self.sunk.__getitem__)
@@ -221,6 +221,10 @@ class FootContacts:
     def is_known(self, leg: int) -> bool:
         """Return whether a contact is measured, by a switch that works."""
         return self.estimator.known[leg] and not self.is_open(leg)
+
+    def _bears(self, leg: int) -> bool:
+        """Return whether a foot bears load, but for the shortest of interruptions."""
+        return self._without[leg] <= _LOST or self.is_open(leg)
 
     def touches(self, leg: int) -> bool:
         """Return whether a foot bears load now; True where nothing is known."""
