@@ -7,13 +7,14 @@ import mujoco
 import numpy as np
 import pytest
 
+from tarsus.control.robot_controller import RobotController
 from tarsus.errors import InputError, MissingDataError, UnknownNameError
 from tarsus.load.servo_limits import utilisation
 from tarsus.robot.catalogue import list_servos, load_servo
 from tarsus.robot.file import load_robot
 from tarsus.robot.known_servos import KNOWN_SERVOS
 from tarsus.robot.servo import Servo
-from tarsus.simulation import ServoModel, model
+from tarsus.simulation import ServoModel, SimulatedPlant, model
 from tarsus.simulation.servos.command_timing import CommandTiming
 from tarsus.simulation.servos.servo_table import ServoTable
 
@@ -41,6 +42,18 @@ def test_every_servo_of_the_catalogue_has_a_model_that_lists_what_it_assumes(nam
     ):
         assert f"{name}: {word}" in text
     assert ("no-load speed" in text) == (servo.no_load_speed is None)
+
+
+def test_small_servos_have_less_inertia_than_large_ones():
+    inertia = {name: ServoModel.of(load_servo(name)).rotor_inertia for name in ("DS3225", "SG90")}
+    assert inertia == {"DS3225": 0.005, "SG90": pytest.approx(0.035 * 0.147 / 8.73, rel=0.01)}
+
+
+@pytest.mark.parametrize("supply", [4.0, 12.0])
+def test_the_assumed_inertia_does_not_depend_on_the_supply(supply):
+    servo = Servo(name="mine", stall_torque=0.12, torque_at=7.4, no_load_speed=7.0, speed_at=7.4)
+    found = ServoModel.of(servo, supply=supply)
+    assert found.rotor_inertia == pytest.approx(0.035 * 0.12 / 7.0)
 
 
 @pytest.mark.parametrize("name", KNOWN_SERVOS)
@@ -207,3 +220,15 @@ def test_a_servo_of_ones_own_has_a_model():
     found = ServoModel.of(Servo(name="mine", stall_torque=1.0, control="bus"))
     assert found.update_rate == 100.0
     assert "mine: no-load speed 5 rad/s" in found.assumed
+
+
+def test_a_small_robot_walks_with_small_servos():
+    robot = load_robot("mithi").replace(body_mass=0.45, link_mass=np.tile((0.02, 0.02, 0.01), (6, 1)))
+    plant = SimulatedPlant(robot, servos=ServoModel.of(load_servo("MG90S")))
+    controller = RobotController(robot)
+    output, tilts = controller.output, []
+    plant.start(output)
+    for _ in range(200):
+        output = controller.step((0.04, 0, 0), 0.01, plant.step(output, 0.01))
+        tilts.append(np.hypot(*plant.state.body.rpy[:2]))
+    assert np.degrees(np.max(tilts)) < 2.0

@@ -13,7 +13,7 @@ NO_LOAD_SPEED = 5.0
 """Speed without load, where the catalogue has none [rad/s]."""
 
 ROTOR_INERTIA = 0.005
-"""Inertia of rotor and gears, reflected to the output, where it is unknown [kg m^2]."""
+"""Inertia of rotor and gears, reflected to the output, where it is unknown; less in small servos [kg m^2]."""
 
 # What is assumed where no source says more. Position error at which a servo gives its stall torque [rad]: servos whose
 # gain is known have 0.11 to 0.19, stiff digital ones less. With it, and the twist of the gears, the presets' joints
@@ -21,13 +21,16 @@ ROTOR_INERTIA = 0.005
 _FULL_TORQUE_ERROR = math.radians(5.0)
 # Twist of the gears under stall torque [rad].
 _GEAR_TWIST = math.radians(1.0)
+# Greatest time constant of a servo without load, from standstill to 63 % of its no-load speed [s]; the presets' servos
+# of unknown inertia have 0.016 to 0.035 s.
+_TIME_CONSTANT = 0.035
 _BACKLASH = math.radians(0.5)
 _DEAD_BAND = math.radians(0.5)
 _PWM_RATE, _BUS_RATE = 50.0, 100.0  # [1/s]
 _PWM_DELAY, _BUS_DELAY = 0.004, 0.006  # [s]
 
 
-def servo_dynamics(servo: Servo, stall: float) -> tuple[dict[str, float], list[str]]:
+def servo_dynamics(servo: Servo, stall: float, speed: float) -> tuple[dict[str, float], list[str]]:
     """Return what the catalogue does not say of a servo, known or assumed, and a line for each.
 
     Parameters
@@ -36,6 +39,8 @@ def servo_dynamics(servo: Servo, stall: float) -> tuple[dict[str, float], list[s
         The servo.
     stall : float
         Its stall torque at the supply voltage [N m].
+    speed : float
+        Its no-load speed at the supply voltage [rad/s].
 
     Returns
     -------
@@ -49,7 +54,7 @@ def servo_dynamics(servo: Servo, stall: float) -> tuple[dict[str, float], list[s
     pulses = "pwm" in servo.control.lower()
     guesses = {
         "control_stiffness": (stall / _FULL_TORQUE_ERROR, "N m/rad", "stall torque at an error of 5 deg"),
-        "rotor_inertia": (ROTOR_INERTIA, "kg m^2", "assumed"),
+        "rotor_inertia": (min(ROTOR_INERTIA, _TIME_CONSTANT * stall / speed), "kg m^2", "assumed"),
         "backlash": (_BACKLASH, "rad", "0.5 deg, assumed"),
         "dead_band": (_DEAD_BAND, "rad", "0.5 deg, assumed"),
         "update_rate": (_PWM_RATE if pulses else _BUS_RATE, "1/s", "pulses" if pulses else "a bus message a tick"),

@@ -81,7 +81,7 @@ class JointSprings:
                     )
                 stall, speed = at_supply(servo, supply)
                 speed = NO_LOAD_SPEED if np.isnan(speed) else speed
-                found, _ = servo_dynamics(servo, stall)
+                found, _ = servo_dynamics(servo, stall, speed)
                 stiffness = 1.0 / (1.0 / found["control_stiffness"] + 1.0 / found["gear_stiffness"])
                 play, band, inertia = (found[name] for name in ("backlash", "dead_band", "rotor_inertia"))
                 values[leg, joint] = stiffness, stall / speed, play / 2, band / 2, stall, inertia

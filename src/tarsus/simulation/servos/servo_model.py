@@ -129,9 +129,10 @@ class ServoModel:
                 "a joint has no servo; give one in the robot's file ([leg] servo), or simulate with ideal servos"
             )
         stall, speed = at_supply(servo, supply)
-        values, assumed = servo_dynamics(servo, stall)
-        if math.isnan(speed):
-            speed = NO_LOAD_SPEED
+        unknown = math.isnan(speed)
+        speed = NO_LOAD_SPEED if unknown else speed
+        values, assumed = servo_dynamics(servo, stall, speed)
+        if unknown:
             assumed.append(f"no-load speed {speed:g} rad/s")
         assumed.append("no damping beyond the torque-speed line, no dry friction, constant supply")
         return cls(
