@@ -17,7 +17,8 @@ from tarsus.control.terrain.ground_map import GroundMap
 from tarsus.control.terrain.missing_ground import MissingGround
 from tarsus.control.walk.felt_feet import FeltFoot
 from tarsus.control.walk.step_timing import StepTiming
-from tarsus.simulation import SimulatedPlant, terrain
+from tarsus.robot.catalogue import load_servo
+from tarsus.simulation import ServoModel, SimulatedPlant, terrain
 
 NAMES = ("LF", "LM", "LR", "RR", "RM", "RF")
 REST = [0.2 + 0.2j, 0.25j, -0.2 + 0.2j, -0.2 - 0.2j, -0.25j, 0.2 - 0.2j]
@@ -85,7 +86,9 @@ def halved(robot):
 
 
 def test_a_robot_with_short_legs_stops_at_an_edge_and_walks_away_from_it():
-    walk = Walk(terrain.Gaps(start=0.255, width=0.3, depth=0.3, count=1), robot=halved(tarsus.load_robot("strider")))
+    # The servos of a strider of half the size have a sixteenth of its torque.
+    servo, robot = ServoModel.of(load_servo("MG90S")), halved(tarsus.load_robot("strider"))
+    walk = Walk(terrain.Gaps(start=0.255, width=0.3, depth=0.3, count=1), robot=robot, servos=servo)
     stopped = walk.go(0.064, 7.0)
     assert 0.05 < stopped < 0.15
     assert walk.tilt < np.radians(10)
@@ -384,9 +387,9 @@ def test_a_twist_into_a_hole_that_is_seen_is_refused_before_a_foot_is_over_it():
 class Walk:
     """A robot in physics, a strider if no other one is given."""
 
-    def __init__(self, ground, sensors="ideal", robot=None):
+    def __init__(self, ground, sensors="ideal", robot=None, servos="catalogue"):
         robot = robot or tarsus.load_robot("strider")
-        self.plant = SimulatedPlant(robot, terrain=ground, sensors=sensors)
+        self.plant = SimulatedPlant(robot, terrain=ground, sensors=sensors, servos=servos)
         self.controller = tarsus.RobotController(robot)
         self.output = self.controller.output
         self.plant.start(self.output)

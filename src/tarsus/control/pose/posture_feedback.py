@@ -145,12 +145,18 @@ class PostureFeedback:
         else:
             share = max(self._share, self.given_way)
             turn = [quick * _TILT_GAIN * ((1 - share) * a + share * b) for a, b in zip(tilt, along, strict=True)]
-        roll, pitch = (min(max(rate, -quick * _MOST_TURN), quick * _MOST_TURN) for rate in turn)
+        fastest_turn = quick * _MOST_TURN
+        roll, pitch = (min(max(rate, -fastest_turn), fastest_turn) for rate in turn)
         # The nearer a foot is to the end of its reach, the slower it goes there.
-        sinks = [(pitch * place.real - roll * place.imag, _BARRIER * margin) for place, margin in feet]
-        share = min([1.0, *(max(most, 0.0) / speed for speed, most in sinks if speed > 0)])
+        share, sinks = 1.0, list[tuple[float, float]]()
+        for place, margin in feet:
+            sink, fastest_sink = pitch * place.real - roll * place.imag, _BARRIER * margin
+            sinks.append((sink, fastest_sink))
+            if sink > 0.0 and fastest_sink < share * sink:
+                share = max(fastest_sink, 0.0) / sink
         roll, pitch = share * roll, share * pitch
-        climb = min(climb, *(most - share * speed for speed, most in sinks))
+        for sink, fastest_sink in sinks:
+            climb = min(climb, fastest_sink - share * sink)
         climb, most = max(climb, -2 * fastest), _MOVES if self._rests else _RESTS
         self._rests = stands and abs(climb) < most[0] and math.hypot(roll, pitch) < quick * most[1]
         return PostureRates(0.0, (0.0, 0.0)) if self._rests else PostureRates(climb, (roll, pitch))

@@ -113,7 +113,7 @@ class BodyMotion:
             self.tilt = (0.0, 0.0) if self._unmeasured <= _TIMEOUT else None
 
     def level(self, attitude: tuple[float, float] | None, state: GaitState) -> None:
-        """Turn by the newest attitude between two looks: feet that take over load tilt the body sooner.
+        """Turn by the newest attitude once between two looks: feet that take over load tilt the body sooner.
 
         Parameters
         ----------
@@ -122,9 +122,10 @@ class BodyMotion:
         state : GaitState
             The gait state.
         """
-        if attitude is not None and self._moves is not None and not self.looks:
+        if attitude is not None and self._moves is not None and _PERIOD / 2 <= self.since < _PERIOD:
             self.see(attitude, state, 0.0)
             self._turn(*self._moves)
+            self._moves = None
 
     def _turn(self, velocity: complex, feet: list[tuple[complex, float]], stands: bool, pace: float) -> None:
         """Decide how the body is to move over feet that could be so much lower."""
