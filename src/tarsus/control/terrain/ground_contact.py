@@ -230,6 +230,7 @@ def not_sunk(
     stands: Sequence[bool],
     *,
     roughness: float,
+    scale: float,
     tips: bool,
 ) -> list[bool]:
     """Return which feet should stand and may bear load that is not felt.
@@ -242,13 +243,15 @@ def not_sunk(
         The gait state; where ground is expected.
     places, down, stands : sequence of complex, sequence of bool
         Where the feet are, in the heading frame [m]; which should stand, and which do.
-    roughness, tips : float, bool
-        How far ground is off the expected one [m]; whether the robot tips or feet step back: then, none may.
+    roughness, scale : float
+        How far ground is off the expected one [m]; by how much lengths are smaller than given, on short legs, 0 to 1.
+    tips : bool
+        Whether the robot tips or feet step back: then, none may.
     """
-    most = min(_HANGS + depth_allowance(roughness), _HANGS_LOW * float(state.posture.value[2]))
+    most = min(scale * _HANGS + depth_allowance(roughness, scale), _HANGS_LOW * float(state.posture.value[2]))
     feet = zip(places, down, stands, (state.ground_height - state.elevation).tolist(), strict=True)
     near = [
-        on and -most < over - ground.at(place) < (math.inf if stand else _HIGH) and not ground.is_hole(place)
+        on and -most < over - ground.at(place) < (math.inf if stand else scale * _HIGH) and not ground.is_hole(place)
         for place, on, stand, over in feet
     ]
     return near if near == list(down) and not tips else [False] * len(near)
