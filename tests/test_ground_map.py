@@ -196,29 +196,32 @@ def test_no_foot_over_a_hole_that_is_seen_stands_on_ground_that_its_switch_does_
     known.see(ValidReadings(ground=GroundHeights(heights=np.where(hole, -depth, 0.0))), state)
     known.step([(place, 0.0) for place in places[1:]], None, state, 0.03, drift=0j)
     known.choose(state, reach, footholds)
-    near = not_sunk(state, known, places, [True] * 6, [True] * 6, roughness=0.0, scale=1.0, tips=False)
+    near = not_sunk(state, known, places, [True] * 6, [True] * 6, reach=reach, roughness=0.0, tips=False)
     assert near == [depth == 0.0] * 6
 
 
 @pytest.mark.parametrize(
-    ("rise", "stands", "scale", "near"),
+    ("rise", "stands", "scale", "lowest", "near"),
     [
-        (0.0, False, 1.0, True),
-        (0.04, False, 1.0, False),
-        (0.04, True, 1.0, True),
-        (-0.04, False, 1.0, True),
-        (-0.04, False, 0.7, False),
-        (0.025, False, 0.7, False),
+        (0.0, False, 1.0, -0.1, True),
+        (0.04, False, 1.0, -0.1, False),
+        (0.04, True, 1.0, -0.1, True),
+        (-0.04, False, 1.0, -0.1, True),
+        (-0.04, False, 1.0, -0.04, False),
+        (-0.04, True, 1.0, -0.04, True),
+        (-0.04, False, 0.7, -0.1, False),
+        (0.025, False, 0.7, -0.1, False),
     ],
 )
 def test_no_foot_that_is_far_off_the_ground_stands_on_ground_that_its_switch_does_not_tell_of(
-    rise, stands, scale, near
+    rise, stands, scale, lowest, near
 ):
-    (state, _, _), known = stepping(), GroundMap()
+    (state, reach, _), known = stepping(), GroundMap()
+    reach.scale, reach.lowest[0] = scale, lowest
     state = state._replace(ground_height=np.where(np.arange(6) == 0, rise, 0.0))
     places, feet = [complex(foot) - state.origin for foot in state.foot], [stands, *[True] * 5]
     known.step([(place, 0.0) for place in places[1:]], None, state, 0.03, drift=0j)
-    found = not_sunk(state, known, places, [True] * 6, feet, roughness=0.0, scale=scale, tips=False)
+    found = not_sunk(state, known, places, [True] * 6, feet, reach=reach, roughness=0.0, tips=False)
     assert found == [near] * 6
 
 

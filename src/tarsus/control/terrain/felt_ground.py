@@ -243,7 +243,7 @@ class FeltGround:
         """Decide where feet step that find no ground; return which stand, or would, with the robot in the air."""
         contacts, missing, rest, rough = self.contacts, self.missing, footholds.rest.tolist(), self.body.roughness.value
         feet, tips = (places, down, contacts.standing), bool(missing.tips or missing.places)
-        near = not_sunk(state, self.ground, *feet, roughness=rough, scale=self.body.reach.scale, tips=tips)
+        near = not_sunk(state, self.ground, *feet, reach=self.body.reach, roughness=rough, tips=tips)
         contacts.find_open(near, places, centre, self.measured.attitude, dt)
         missing.twist = state.twist.value.tolist()
         if self.condition.carried:

@@ -229,13 +229,14 @@ def not_sunk(
     down: Sequence[bool],
     stands: Sequence[bool],
     *,
+    reach: Reach,
     roughness: float,
-    scale: float,
     tips: bool,
 ) -> list[bool]:
     """Return which feet should stand and may bear load that is not felt.
 
-    None may while one of them is not close to the ground: its leg may rest on an edge, or lean against a wall.
+    None may while one of them is not close to the ground, or at the end of its reach: its leg may rest on an edge, or
+    lean against a wall.
 
     Parameters
     ----------
@@ -243,15 +244,16 @@ def not_sunk(
         The gait state; where ground is expected.
     places, down, stands : sequence of complex, sequence of bool
         Where the feet are, in the heading frame [m]; which should stand, and which do.
-    roughness, scale : float
-        How far ground is off the expected one [m]; by how much lengths are smaller than given, on short legs, 0 to 1.
-    tips : bool
-        Whether the robot tips or feet step back: then, none may.
+    reach : Reach
+        How low each leg reaches.
+    roughness, tips : float, bool
+        How far ground is off the expected one [m]; whether the robot tips or feet step back: then, none may.
     """
-    most = min(scale * _HANGS + depth_allowance(roughness, scale), _HANGS_LOW * float(state.posture.value[2]))
-    feet = zip(places, down, stands, (state.ground_height - state.elevation).tolist(), strict=True)
-    near = [
-        on and -most < over - ground.at(place) < (math.inf if stand else scale * _HIGH) and not ground.is_hole(place)
-        for place, on, stand, over in feet
-    ]
+    scale, height = reach.scale, float(state.posture.value[2])
+    most = min(scale * _HANGS + depth_allowance(roughness, scale), _HANGS_LOW * height)
+    near = list[bool]()
+    for leg, over in enumerate((state.ground_height - state.elevation).tolist()):
+        place, high = places[leg], math.inf if stands[leg] else scale * _HIGH
+        hangs = ground.is_hole(place) or (reach.hangs(leg, over) and not stands[leg])
+        near.append(down[leg] and -most < over - ground.at(place) < high and not hangs)
     return near if near == list(down) and not tips else [False] * len(near)
