@@ -610,7 +610,7 @@ def test_feet_of_a_body_that_is_far_off_its_attitude_do_not_step_back():
         assert bool(missing.places) is steps
         assert bool(missing.tips) is tips
     # On rough ground the body is off its attitude more often.
-    assert stepped(MissingGround(NAMES), [(0, 0.12, False, True)], leans=0.022, roughness=0.02).places
+    assert stepped(MissingGround(NAMES), [(0, 0.13, False, True)], leans=0.022, roughness=0.02).places
 
 
 def test_a_robot_whose_foot_slides_off_an_edge_as_others_lift_off_puts_them_down():
@@ -723,7 +723,8 @@ def test_a_walk_that_the_ground_slows_down_or_stops_always_says_why():
 
 
 def test_roughness_makes_a_hole_deeper_by_a_bounded_depth():
-    assert stepped(MissingGround(NAMES), [(0, 0.11, True, True)], roughness=1.0).places
+    assert not stepped(MissingGround(NAMES), [(0, 0.12, True, True)], roughness=1.0).places
+    assert stepped(MissingGround(NAMES), [(0, 0.125, True, True)], roughness=1.0).places
 
 
 def test_another_foot_without_ground_does_not_change_the_side_of_a_known_edge():

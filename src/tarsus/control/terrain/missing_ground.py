@@ -14,8 +14,8 @@ from tarsus.control.terrain.support import holds
 
 __all__ = ["SLOW", "MissingGround"]
 
-# Depth below the expected ground at which there is none, over the body height.
-_DEEP = 0.75
+# Depth below the expected ground at which there is none, over the body height, and over what rough ground allows.
+_DEEP, _ROUGHLY_DEEP = 0.75, 1.6
 # Depths from which on the walk slows down, and stands still, or goes on slowly with feet at the end of their reach [m].
 _SLOWS, _STANDS, _SLOWEST = 0.005, 0.02, 0.25
 # A foot that is measured higher than commanded by more is held up by its leg [m]; where it is at less depth than one of
@@ -177,7 +177,7 @@ class MissingGround:
             self._held[leg] = (before.get(leg, 0.0) + dt) * (held_up and not falls)
             long = not lasts or self._held[leg] > _HELD
             hangs = not falls and depth > deep if leg in self.places else long
-            missing = depth - max(raised, 0.0) > _DEEP * height + rough or hangs
+            missing = depth - max(raised, 0.0) > _DEEP * height + _ROUGHLY_DEEP * rough or hangs
             missing &= abs(leans) < max(self._scale * _LEANS, rough)
             if _tips(search, deep, held=held):
                 self._tip(way)
