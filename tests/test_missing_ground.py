@@ -15,6 +15,7 @@ from tarsus.control.terrain.foot_contacts import FootContacts, Search
 from tarsus.control.terrain.ground_contact import met_ground
 from tarsus.control.terrain.ground_map import GroundMap
 from tarsus.control.terrain.missing_ground import MissingGround
+from tarsus.control.terrain.roughness import Roughness
 from tarsus.control.walk.felt_feet import FeltFoot
 from tarsus.control.walk.step_timing import StepTiming
 from tarsus.robot.catalogue import load_servo
@@ -684,6 +685,27 @@ def test_while_the_walk_waits_a_foot_on_its_way_down_stands_on_lower_ground_that
     known = contacts, GroundMap(), tarsus.WalkController(setup.robot)._walk.ground.body, MissingGround(NAMES)
     _, landed = met_ground(state, *known, stopped=[], timing=timing, pace=pace, in_air=False)
     assert landed == [0] * lands
+
+
+@pytest.mark.parametrize(("height", "sunk", "off"), [(0.03, 0.0, 0.03), (0.03, 0.02, 0.01), (-0.03, 0.02, 0.03)])
+def test_ground_that_a_foot_meets_sooner_as_the_body_tips_towards_it_is_not_rough(height, sunk, off):
+    setup, rest = setup_of("strider"), rest_of("strider")
+    timing, state, lifted = StepTiming.of(setup.gait, 1.0), begun(setup, rest), np.arange(6) == 0
+    state = state._replace(
+        down=~lifted,
+        swing_phase=np.where(lifted, 0.8, 0.0),
+        ground_height=np.where(lifted, height, 0.0),
+        felt=[FeltFoot(speed=-0.1, top=0.03, top_phase=0.42), *[FeltFoot()] * 5],
+    )
+    contacts, body = FootContacts(6), tarsus.WalkController(setup.robot)._walk.ground.body
+    for touches in (False, True):
+        for _ in range(10):
+            contacts.step([touches, *[True] * 5], state.down.tolist(), 0.01)
+    contacts.sunk[0], expected = sunk, Roughness(tarsus.GroundAdaptation())
+    expected.landed(off)
+    known = contacts, GroundMap(), body, MissingGround(NAMES)
+    met_ground(state, *known, stopped=[], timing=timing, pace=1.0, in_air=False)
+    assert body.roughness.value == pytest.approx(expected.value)
 
 
 def test_a_robot_that_is_carried_away_forgets_an_obstacle():

@@ -95,7 +95,9 @@ def met_ground(
             expected = ground.at(places[leg])
             if tells or over <= expected + _ROUNDING:
                 if tells:
-                    body.roughness.landed(over - expected)
+                    # A body that sinks at the foot by its tilt meets the ground sooner.
+                    off, sunk = over - expected, max(contacts.sunk[leg], 0.0)
+                    body.roughness.landed(min(off, max(off - sunk, 0.0)))
                 state = _landed(state, leg, timing, pace)
                 landed.append(leg)
         elif ((touches and contacts.lifted[leg]) or leg in stopped) and not leaves and _collides(state, leg, contacts):
