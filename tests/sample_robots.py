@@ -1,5 +1,7 @@
 """Robots for tests: made by hand, or at random within what a builder might choose."""
 
+from dataclasses import replace
+
 import numpy as np
 
 from tarsus.robot.robot import Robot
@@ -50,3 +52,23 @@ def random_hexapod(rng, *, box=True):
 def standing(count=6):
     """Angles of a stance with the knees up, as degrees (0, 35, -95) for each leg."""
     return np.deg2rad(np.tile([0.0, 35.0, -95.0], (count, 1)))
+
+
+def halved(robot):
+    """A robot of half the size: dynamically similar, but for dead bands and delays of its servos."""
+    lengths = ("mount_position", "coxa", "femur", "tibia", "foot_radius", "link_com", "body_com", "body_size")
+    gait = replace(robot.gait, body_height=robot.gait.body_height / 2, swing_height=robot.gait.swing_height / 2)
+    masses = {name: getattr(robot, name) / 8 for name in ("link_mass", "body_mass")}
+    servos = tuple(
+        tuple(
+            replace(
+                servo,
+                name=f"half {servo.name}",
+                stall_torque=servo.stall_torque / 16,
+                no_load_speed=servo.no_load_speed * np.sqrt(2),
+            )
+            for servo in row
+        )
+        for row in robot.servos
+    )
+    return replace(robot, gait=gait, servos=servos, **masses, **{name: getattr(robot, name) / 2 for name in lengths})

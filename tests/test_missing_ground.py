@@ -1,13 +1,12 @@
 """Holes and obstacles: feet step back or try again, and the robot stops and walks away."""
 
-from dataclasses import replace
-
 import mujoco
 import numpy as np
 import pytest
 
 import tarsus
 from sample_gait_states import begun, rest_of, setup_of
+from sample_robots import halved
 from tarsus.control.limitation import LimitationKind
 from tarsus.control.limiter.protocol import TwistGrant, TwistRequest
 from tarsus.control.sensing.leg_odometry import LegOdometry
@@ -18,8 +17,7 @@ from tarsus.control.terrain.missing_ground import MissingGround
 from tarsus.control.terrain.roughness import Roughness
 from tarsus.control.walk.felt_feet import FeltFoot
 from tarsus.control.walk.step_timing import StepTiming
-from tarsus.robot.catalogue import load_servo
-from tarsus.simulation import ServoModel, SimulatedPlant, terrain
+from tarsus.simulation import SimulatedPlant, terrain
 
 NAMES = ("LF", "LM", "LR", "RR", "RM", "RF")
 REST = [0.2 + 0.2j, 0.25j, -0.2 + 0.2j, -0.2 - 0.2j, -0.25j, 0.2 - 0.2j]
@@ -78,18 +76,9 @@ def test_holes_and_edges_are_smaller_for_short_legs():
     assert back.real < 0 < pace < 1
 
 
-def halved(robot):
-    """Return a robot of half the size and an eighth of the masses."""
-    lengths = ("mount_position", "coxa", "femur", "tibia", "foot_radius", "link_com", "body_com", "body_size")
-    gait = replace(robot.gait, body_height=robot.gait.body_height / 2, swing_height=robot.gait.swing_height / 2)
-    masses = {name: getattr(robot, name) / 8 for name in ("link_mass", "body_mass")}
-    return replace(robot, gait=gait, **masses, **{name: getattr(robot, name) / 2 for name in lengths})
-
-
 def test_a_robot_with_short_legs_stops_at_an_edge_and_walks_away_from_it():
-    # The servos of a strider of half the size have a sixteenth of its torque.
-    servo, robot = ServoModel.of(load_servo("MG90S")), halved(tarsus.load_robot("strider"))
-    walk = Walk(terrain.Gaps(start=0.255, width=0.3, depth=0.3, count=1), robot=robot, servos=servo)
+    robot = halved(tarsus.load_robot("strider"))
+    walk = Walk(terrain.Gaps(start=0.255, width=0.3, depth=0.3, count=1), robot=robot)
     stopped = walk.go(0.064, 7.0)
     assert 0.05 < stopped < 0.15
     assert walk.tilt < np.radians(10)
@@ -388,9 +377,9 @@ def test_a_twist_into_a_hole_that_is_seen_is_refused_before_a_foot_is_over_it():
 class Walk:
     """A robot in physics, a strider if no other one is given."""
 
-    def __init__(self, ground, sensors="ideal", robot=None, servos="catalogue"):
+    def __init__(self, ground, sensors="ideal", robot=None):
         robot = robot or tarsus.load_robot("strider")
-        self.plant = SimulatedPlant(robot, terrain=ground, sensors=sensors, servos=servos)
+        self.plant = SimulatedPlant(robot, terrain=ground, sensors=sensors)
         self.controller = tarsus.RobotController(robot)
         self.output = self.controller.output
         self.plant.start(self.output)
