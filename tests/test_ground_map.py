@@ -196,7 +196,7 @@ def test_no_foot_over_a_hole_that_is_seen_stands_on_ground_that_its_switch_does_
     known.see(ValidReadings(ground=GroundHeights(heights=np.where(hole, -depth, 0.0))), state)
     known.step([(place, 0.0) for place in places[1:]], None, state, 0.03, drift=0j)
     known.choose(state, reach, footholds)
-    near = not_sunk(state, known, places, [True] * 6, [True] * 6, reach=reach, roughness=0.0, tips=False)
+    near = not_sunk(state, known, places, [True] * 6, [True] * 6, reach=reach, deeper=0.0, tips=False)
     assert near == [depth == 0.0] * 6
 
 
@@ -221,7 +221,7 @@ def test_no_foot_that_is_far_off_the_ground_stands_on_ground_that_its_switch_doe
     state = state._replace(ground_height=np.where(np.arange(6) == 0, rise, 0.0))
     places, feet = [complex(foot) - state.origin for foot in state.foot], [stands, *[True] * 5]
     known.step([(place, 0.0) for place in places[1:]], None, state, 0.03, drift=0j)
-    found = not_sunk(state, known, places, [True] * 6, feet, reach=reach, roughness=0.0, tips=False)
+    found = not_sunk(state, known, places, [True] * 6, feet, reach=reach, deeper=0.0, tips=False)
     assert found == [near] * 6
 
 

@@ -31,7 +31,7 @@ def stepped(
     *,
     stands=(False, *[True] * 5),
     centre=0j,
-    roughness=0.0,
+    deeper=0.0,
     sunk=(0.0,) * 6,
     raised=0.0,
     dt=0.01,
@@ -39,7 +39,7 @@ def stepped(
     leans=0.0,
     lost=None,
 ):
-    sizes, missing.twist, missing.lost = {"height": 0.1, "roughness": roughness}, twist, lost
+    sizes, missing.twist, missing.lost = {"height": 0.1, "deeper": deeper}, twist, lost
     searches = [Search(*search, sunk=sunk[search[0]], raised=raised, leans=leans) for search in searches]
     missing.step(searches, feet, stands, dt, centre=centre, rest=REST, radii=[0.05] * 6, **sizes)
     return missing
@@ -51,14 +51,14 @@ def limited(missing, *twist):
 
 
 def test_the_walk_slows_down_the_deeper_a_foot_searches_and_less_on_rough_ground():
-    def pace(depth, *, falls=True, roughness=0.0):
-        return stepped(MissingGround(NAMES), [(0, depth, falls, True)], roughness=roughness).pace
+    def pace(depth, *, falls=True, deeper=0.0):
+        return stepped(MissingGround(NAMES), [(0, depth, falls, True)], deeper=deeper).pace
 
     depths = [pace(depth) for depth in (0.0, 0.01, 0.015, 0.03)]
     assert depths == sorted(depths, reverse=True)
     assert (depths[0], depths[-1]) == (1.0, 0.0)
     assert 0 < pace(0.03, falls=False) < 1
-    assert pace(0.03, roughness=0.02) == 1.0
+    assert pace(0.03, deeper=0.03) == 1.0
     assert not stepped(MissingGround(NAMES), [(0, 0.05, True, True)]).places
     assert stepped(MissingGround(NAMES), [(0, 0.05, False, False)]).places
 
@@ -199,8 +199,8 @@ def test_an_edge_to_known_ground_that_the_leg_does_not_reach_is_tried_with_other
 
 
 def test_where_rough_ground_is_not_found_the_walk_goes_on_with_other_footholds():
-    def refused(roughness):
-        missing = stepped(MissingGround(NAMES), [(0, 0.05, False, False)], roughness=roughness)
+    def refused(deeper):
+        missing = stepped(MissingGround(NAMES), [(0, 0.05, False, False)], deeper=deeper)
         limited(missing, 0.1, 0.0, 0.0)
         for _ in range(110):
             stepped(missing, [], stands=[True] * 6)
@@ -208,11 +208,11 @@ def test_where_rough_ground_is_not_found_the_walk_goes_on_with_other_footholds()
         return missing.refuses
 
     assert refused(0.0)
-    assert not refused(0.02)
+    assert not refused(0.03)
 
 
 def test_a_walk_that_goes_on_at_an_edge_makes_up_for_no_lost_time_at_first():
-    missing, fast = stepped(MissingGround(NAMES), [(0, 0.05, False, False)], roughness=0.02), []
+    missing, fast = stepped(MissingGround(NAMES), [(0, 0.05, False, False)], deeper=0.03), []
     request = TwistRequest((0.1, 0.0, 0.0), 0.01, None, np.zeros(3))
     assert MissingGround(NAMES).limit(request, TwistGrant(fraction=1.5)).fraction == 1.5
     for _ in range(300):
@@ -518,10 +518,10 @@ def test_a_foot_that_loses_its_ground_on_the_way_back_from_an_edge_has_met_that_
 
 
 def test_a_foot_that_loses_its_ground_on_the_way_back_after_another_attempt_has_met_that_edge():
-    missing = stepped(MissingGround(NAMES), [(0, 0.05, False, False)], roughness=0.02, twist=(0.1, 0.0, 0.0))
+    missing = stepped(MissingGround(NAMES), [(0, 0.05, False, False)], deeper=0.03, twist=(0.1, 0.0, 0.0))
     for _ in range(110):
         limited(missing, 0.1, 0.0, 0.0)
-        stepped(missing, [], stands=[True] * 6, roughness=0.02)
+        stepped(missing, [], stands=[True] * 6, deeper=0.03)
     assert limited(missing, 0.1, 0.0, 0.0).fraction == 1.0
     limited(missing, -0.1, 0.0, 0.0)
     behind = [REST[0] - 0.04, *REST[1:]]
@@ -554,7 +554,7 @@ def test_a_robot_that_tips_towards_a_foot_goes_back_at_once_but_not_far():
     # Not where the other feet hold it, where the foot may still find ground, and on rough ground not so soon.
     assert stepped(MissingGround(NAMES), deep).back == 0
     assert stepped(MissingGround(NAMES), [(0, 0.015, True, True)], stands=two).back == 0
-    assert stepped(MissingGround(NAMES), deep, stands=two, roughness=0.02).back == 0
+    assert stepped(MissingGround(NAMES), deep, stands=two, deeper=0.03).back == 0
     assert stepped(MissingGround(NAMES), [(0, 0.005, True, True)], stands=two, sunk=[0.02] * 6).back.real < 0
     # A body that sinks far tips, whatever the others seem to hold.
     assert stepped(MissingGround(NAMES), deep, sunk=[0.025] * 6).back.real < 0
@@ -600,7 +600,7 @@ def test_feet_of_a_body_that_is_far_off_its_attitude_do_not_step_back():
         assert bool(missing.places) is steps
         assert bool(missing.tips) is tips
     # On rough ground the body is off its attitude more often.
-    assert stepped(MissingGround(NAMES), [(0, 0.13, False, True)], leans=0.022, roughness=0.02).places
+    assert stepped(MissingGround(NAMES), [(0, 0.13, False, True)], leans=0.022, deeper=0.03).places
 
 
 def test_a_robot_whose_foot_slides_off_an_edge_as_others_lift_off_puts_them_down():
@@ -733,9 +733,10 @@ def test_a_walk_that_the_ground_slows_down_or_stops_always_says_why():
             assert all(each.leg and each.cause for each in (*missing.limitations, *grant.limitations))
 
 
-def test_roughness_makes_a_hole_deeper_by_a_bounded_depth():
-    assert not stepped(MissingGround(NAMES), [(0, 0.12, True, True)], roughness=1.0).places
-    assert stepped(MissingGround(NAMES), [(0, 0.125, True, True)], roughness=1.0).places
+@pytest.mark.parametrize(("deeper", "deepest"), [(0.0, 0.075), (0.03, 0.123), (0.05, 0.155)])
+def test_holes_are_deeper_by_what_rough_ground_allows(deeper, deepest):
+    assert not stepped(MissingGround(NAMES), [(0, deepest - 0.002, True, True)], deeper=deeper).places
+    assert stepped(MissingGround(NAMES), [(0, deepest + 0.002, True, True)], deeper=deeper).places
 
 
 def test_another_foot_without_ground_does_not_change_the_side_of_a_known_edge():

@@ -241,9 +241,10 @@ class FeltGround:
         dt: float,
     ) -> list[bool]:
         """Decide where feet step that find no ground; return which stand, or would, with the robot in the air."""
-        contacts, missing, rest, rough = self.contacts, self.missing, footholds.rest.tolist(), self.body.roughness.value
+        contacts, missing, rest = self.contacts, self.missing, footholds.rest.tolist()
+        deeper = self.body.roughness.depth_allowance
         feet, tips = (places, down, contacts.standing), bool(missing.tips or missing.places)
-        near = not_sunk(state, self.ground, *feet, reach=self.body.reach, roughness=rough, tips=tips)
+        near = not_sunk(state, self.ground, *feet, reach=self.body.reach, deeper=deeper, tips=tips)
         contacts.find_open(near, places, centre, self.measured.attitude, dt)
         missing.twist = state.twist.value.tolist()
         if self.condition.carried:
@@ -257,8 +258,8 @@ class FeltGround:
         known = state, contacts, self.ground, places, self.body.off, raised
         searches = [] if waits else searching_feet(*known, down=down, stands=stands)
         on, radii = [on and stand for on, stand in zip(down, stands, strict=True)], footholds.placement_radii
-        missing.lost, height = contacts.tips(down, places, centre, missing.sinks(rough)), float(state.posture.value[2])
-        missing.step(searches, places, on, dt, centre=centre, rest=rest, radii=radii, height=height, roughness=rough)
+        missing.lost, height = contacts.tips(down, places, centre, missing.sinks(deeper)), float(state.posture.value[2])
+        missing.step(searches, places, on, dt, centre=centre, rest=rest, radii=radii, height=height, deeper=deeper)
         # With the body higher and feet drawn in, legs are steeper beside an edge.
         self.body.roughness.landed(missing.edge)
         return stands

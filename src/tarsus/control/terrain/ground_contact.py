@@ -11,7 +11,6 @@ from tarsus.control.terrain.foot_contacts import FootContacts, Search, sunk_at
 from tarsus.control.terrain.ground_map import GroundMap
 from tarsus.control.terrain.missing_ground import MissingGround
 from tarsus.control.terrain.reach import Reach
-from tarsus.control.terrain.roughness import depth_allowance
 from tarsus.control.terrain.support import HALTING
 from tarsus.control.walk.felt_feet import FeltFoot
 from tarsus.control.walk.state import GaitState
@@ -232,7 +231,7 @@ def not_sunk(
     stands: Sequence[bool],
     *,
     reach: Reach,
-    roughness: float,
+    deeper: float,
     tips: bool,
 ) -> list[bool]:
     """Return which feet should stand and may bear load that is not felt.
@@ -248,11 +247,11 @@ def not_sunk(
         Where the feet are, in the heading frame [m]; which should stand, and which do.
     reach : Reach
         How low each leg reaches.
-    roughness, tips : float, bool
-        How far ground is off the expected one [m]; whether the robot tips or feet step back: then, none may.
+    deeper, tips : float, bool
+        How much deeper ground may be than expected [m]; whether the robot tips or feet step back: then, none may.
     """
     scale, height = reach.scale, float(state.posture.value[2])
-    most = min(scale * _HANGS + depth_allowance(roughness, scale), _HANGS_LOW * height)
+    most = min(scale * _HANGS + deeper, _HANGS_LOW * height)
     near = list[bool]()
     for leg, over in enumerate((state.ground_height - state.elevation).tolist()):
         place, high = places[leg], math.inf if stands[leg] else scale * _HIGH

@@ -9,7 +9,6 @@ from tarsus.control.limitation import Limitation, LimitationKind
 from tarsus.control.limiter.protocol import TwistGrant, TwistRequest, leads_towards
 from tarsus.control.terrain.foot_contacts import Search
 from tarsus.control.terrain.obstacles import Obstacles
-from tarsus.control.terrain.roughness import depth_allowance
 from tarsus.control.terrain.support import holds
 
 __all__ = ["SLOW", "MissingGround"]
@@ -29,8 +28,8 @@ _LIFTS = 0.008
 _SINKS, _LEANS = 0.01, 0.02
 # A walk that is slower says why.
 SLOW = 0.85
-# From which roughness on it is not sure that there is no ground [m].
-_UNSURE = 0.005
+# How much deeper than expected ground may be at most where it is sure that there is none [m].
+_SURE = 0.0125
 # Where a foot steps back to, from its rest foothold against its way, over how far from there it may stand; with the
 # last, the body backs off as far as it may.
 _BACK = (0.4, 1.0, 1.0)
@@ -112,9 +111,9 @@ class MissingGround:
         """Return whether a foot, here in the heading frame, is on its way past an obstacle."""
         return self.obstacles.tries(leg) and self.steps_back(leg, foot)
 
-    def sinks(self, roughness: float) -> float:
+    def sinks(self, deeper: float) -> float:
         """Return by how much the body sinks at a foot without contact at most, if the robot does not tip [m]."""
-        return depth_allowance(roughness, self._scale) + self._scale * _SINKS
+        return deeper + self._scale * _SINKS
 
     def gives_up(self, leg: int) -> bool:
         """Return whether a foot has found no ground at any place."""
@@ -131,7 +130,7 @@ class MissingGround:
         rest: Sequence[complex],
         radii: Sequence[float],
         height: float,
-        roughness: float,
+        deeper: float,
     ) -> None:
         """Decide for a tick.
 
@@ -145,8 +144,8 @@ class MissingGround:
             Length of the tick [s]; the centre of mass [m].
         rest, radii : sequence of complex, sequence of float
             Rest footholds [m]; how far from these feet may stand [m].
-        height, roughness : float
-            Body height, and how far ground is off the expected one [m].
+        height, deeper : float
+            Body height, and how much deeper ground may be than expected [m].
         """
         self._walked = self._walked if searches else self.twist
         beside = self.obstacles.go_on(lambda leg: not self.steps_back(leg, feet[leg]))
@@ -161,9 +160,9 @@ class MissingGround:
         if self.lost is not None:
             self._tip(feet[self.lost] / abs(feet[self.lost]))
             self.pace, self._slows = 0.0, self._names[self.lost]
-        rough, before, self._held = depth_allowance(roughness, self._scale), self._held, {}
-        slows, deep = rough + self._scale * _SLOWS, rough + self._scale * _STANDS
-        standing = [foot for foot, on in zip(feet, stands, strict=True) if on]
+        before, self._held = self._held, {}
+        slows, deep = deeper + self._scale * _SLOWS, deeper + self._scale * _STANDS
+        sure, standing = deeper <= self._scale * _SURE, [foot for foot, on in zip(feet, stands, strict=True) if on]
         # A robot none of whose feet stands is being lifted.
         held = not (searches and standing) or holds(standing, centre)
         for search in searches:
@@ -177,13 +176,13 @@ class MissingGround:
             self._held[leg] = (before.get(leg, 0.0) + dt) * (held_up and not falls)
             long = not lasts or self._held[leg] > _HELD
             hangs = not falls and depth > deep if leg in self.places else long
-            missing = depth - max(raised, 0.0) > _DEEP * height + _ROUGHLY_DEEP * rough or hangs
-            missing &= abs(leans) < max(self._scale * _LEANS, rough)
+            missing = depth - max(raised, 0.0) > _DEEP * height + _ROUGHLY_DEEP * deeper or hangs
+            missing &= abs(leans) < max(self._scale * _LEANS, deeper)
             if _tips(search, deep, held=held):
                 self._tip(way)
             if missing and not (self.steps_back(leg, feet[leg]) or self.gives_up(leg)):
                 self.edge = depth if held_up else self.edge
-                self._step_back(leg, depth, way, rest[leg], radii[leg], sure=max(roughness, self.edge) <= _UNSURE)
+                self._step_back(leg, depth, way, rest[leg], radii[leg], sure=sure and not self.edge)
         self._since = 0.0 if self.places else self._since + dt
         speed, backed = self._scale * _SPEED, self._backed < self._scale * _BACKS
         if not self.places:

@@ -9,10 +9,10 @@ from tarsus.errors import InputError
 from tarsus.gait.walk_setup import require_number
 from tarsus.representation import represented
 
-__all__ = ["GroundAdaptation", "Roughness", "depth_allowance"]
+__all__ = ["GroundAdaptation", "Roughness"]
 
 # Roughness that a collision stands for [m].
-_COLLISION = 0.02
+_COLLISION = 0.04
 # Footholds this close to the expected ground are even [m].
 _EVEN = 0.008
 # Cycles after which the roughness has fallen to 1/e.
@@ -21,8 +21,9 @@ _MEMORY = 4.0
 _ROUGH, _ROUGHEST = 0.02, 0.04
 # Roughness at which cycles are as on even ground again: legs reach less high and low in long strokes [m].
 _HIGH = 0.05
-# How much deeper ground may be where it is rough: over the roughness, and at most [m].
-_DEEPER, _DEEPEST = 2.5, 0.03
+# How much deeper ground may be where it is rough: over the roughness, and at most [m]; over how many cycles that grows,
+# and to which depth [m]. At a single edge on even ground the roughness has not lasted.
+_DEEPER, _DEEPEST, _LASTS, _LASTING_DEEPEST = 2.5, 0.03, 3.0, 0.05
 # Stance, cycle and speed change in steps of this share: each has limits computed anew.
 _STEPS = 4
 
@@ -91,7 +92,7 @@ class Roughness:
     """
 
     def __init__(self, adaptation: GroundAdaptation, *, scale: float = 1.0) -> None:
-        self.value = 0.0
+        self.value = self._lasting = 0.0
         self.adaptation, self._scale = adaptation, scale
 
     def landed(self, off: float) -> None:
@@ -117,6 +118,8 @@ class Roughness:
             Cycles that have passed.
         """
         self.value *= math.exp(-cycles / _MEMORY)
+        rising = self._lasting + (self.value - self._lasting) * -math.expm1(-cycles / _LASTS)
+        self._lasting = min(rising, self.value)
 
     @property
     def swing_rise(self) -> float:
@@ -132,6 +135,12 @@ class Roughness:
     def drawn_in(self) -> float:
         """How far feet are drawn in [m]."""
         return self._share(0.0, _ROUGH) * self.adaptation.drawn_in
+
+    @property
+    def depth_allowance(self) -> float:
+        """How much deeper ground may be than expected [m]."""
+        once = min(_DEEPER * self.value, self._scale * _DEEPEST)
+        return max(once, min(_DEEPER * self._lasting, self._scale * _LASTING_DEEPEST))
 
     def cycle_time(self, on_slope: float = 1.0) -> float:
         """Return the cycle time over that on even ground.
@@ -154,14 +163,3 @@ class Roughness:
         """Return where the roughness is between two values, 0 to 1."""
         share = (self.value / self._scale - least) / (most - least)
         return min(max(round(_STEPS * share) / _STEPS, 0.0), 1.0)
-
-
-def depth_allowance(roughness: float, scale: float = 1.0) -> float:
-    """Return how much deeper ground may be where the ground is rough [m].
-
-    Parameters
-    ----------
-    roughness, scale : float
-        How far ground is off the expected one [m]; by how much lengths are smaller than given, on short legs, 0 to 1.
-    """
-    return min(_DEEPER * roughness, scale * _DEEPEST)
