@@ -152,6 +152,21 @@ def test_front_legs_reach_higher_ahead_and_rear_legs_behind():
     assert reach.highest_on_way(0, rest[0] + 0.03, rest[0]) == tops[0][1]
 
 
+def test_places_out_of_reach_on_level_ground_do_not_tell_how_low_a_leg_reaches():
+    controller = WalkController(STRIDER)
+    posture, rest = controller._tick.gait.posture.value, controller._tick.gait.foot
+    reach, still = Reach(STRIDER), np.zeros(3)
+    reach.update(posture, rest, still, 0.5)
+    lowest, highest = reach.lowest, reach.highest
+    # Ends of a stroke of half a metre are in reach at no height, its middle is.
+    reach.update(posture, rest, np.array([1.0, 0.0, 0.0]), 0.5)
+    assert (reach.lowest, reach.highest) == (lowest, highest)
+    # A leg whose foothold is out of reach keeps what is known of it, as 0 would command the body down at once.
+    reach.update(posture, np.array([rest[0] + 0.5, *rest[1:]]), still, 0.5)
+    assert (reach.lowest, reach.highest) == (lowest, highest)
+    assert max(reach.lowest) < 0 < min(reach.highest)
+
+
 def test_support_slows_the_walk_down_only_where_feet_wait_for_long():
     assert holds(FEET, 0j)
     assert not holds(FEET[:2], 0j)

@@ -82,7 +82,13 @@ class Reach:
             self._key, self._rest, strokes = key, rest, complex(x, y) + 1j * arc / _TURNING_ARM * rest
             self.stroke, self.strokes = float(np.abs(strokes).max()) / 2, strokes
             lowest, highest = reachable_heights(self._robot, posture, rest, strokes)
-            self.lowest, self.highest = lowest.max(axis=0).tolist(), highest.min(axis=0).tolist()
+            # Ends of strokes beyond the limits of the coxa are not walked; a leg wholly out of reach keeps what is known.
+            walked = lowest < highest
+            kept = ~walked.any(axis=0)
+            least = np.where(walked, lowest, -np.inf).max(axis=0)
+            most = np.where(walked, highest, np.inf).min(axis=0)
+            self.lowest = np.where(kept, self.lowest, least).tolist()
+            self.highest = np.where(kept, self.highest, most).tolist()
             self._tops = [tuple(heights) for heights in highest.T.tolist()]
 
     def highest_on_way(self, leg: int, start: complex, end: complex) -> float:
