@@ -17,7 +17,7 @@ from tarsus.control.sensing.validation import ReadingsValidator
 from tarsus.control.terrain.foot_contacts import FootContacts
 from tarsus.control.terrain.reach import Reach
 from tarsus.control.terrain.roughness import Roughness
-from tarsus.control.terrain.support import Support, holds
+from tarsus.control.terrain.support import Support, along_gravity, holds
 from tarsus.control.walk.felt_feet import FeltFoot, FeltInputs, GroundUnder
 from tarsus.control.walk.vertical_motion import _searching, _swinging
 from tarsus.control.walk_controller import WalkController
@@ -165,6 +165,14 @@ def test_places_out_of_reach_on_level_ground_do_not_tell_how_low_a_leg_reaches()
     reach.update(posture, np.array([rest[0] + 0.5, *rest[1:]]), still, 0.5)
     assert (reach.lowest, reach.highest) == (lowest, highest)
     assert max(reach.lowest) < 0 < min(reach.highest)
+
+
+@pytest.mark.parametrize(("roll", "pitch"), [(0.0, 0.0), (0.0, -0.3), (0.2, 0.0), (-0.15, 0.25)])
+def test_the_centre_of_mass_is_over_the_feet_along_gravity(roll, pitch):
+    down = np.asarray(tarsus.Pose.from_rpy(roll, pitch).inverse() @ np.array([0.0, 0.0, -1.0]))
+    x, y, _ = down * 0.1 / -down[2]
+    found = along_gravity(0.02 + 0.01j, (0.01, -0.02, 0.1), (roll, pitch))
+    assert found == pytest.approx(complex(0.03 + x, -0.01 + y), rel=0.02)
 
 
 def test_support_slows_the_walk_down_only_where_feet_wait_for_long():

@@ -22,7 +22,7 @@ from tarsus.control.terrain.ground_contact import met_ground, not_sunk, searchin
 from tarsus.control.terrain.ground_map import GroundMap
 from tarsus.control.terrain.missing_ground import SLOW, MissingGround
 from tarsus.control.terrain.roughness import GroundAdaptation
-from tarsus.control.terrain.support import Support
+from tarsus.control.terrain.support import Support, along_gravity
 from tarsus.control.transition.foothold_transfer import FootholdTransfer
 from tarsus.control.walk.felt_feet import FeltFoot, FeltInputs, GroundUnder
 from tarsus.control.walk.ground_pose import body_posture
@@ -190,7 +190,7 @@ class FeltGround:
             feet = places, [on and leg not in self.missing.obstacles.legs for leg, on in enumerate(down)]
             self.body.step(state, self.measured, feet=feet, timing=timing, twist=twist, pace=pace, rest=rest)
             self.ground.choose(state, self.body.reach, footholds)
-        centre = self._centre + complex(*body_posture(state)[:2].tolist())
+        centre = along_gravity(self._centre, body_posture(state)[:3].tolist(), self.body.tilt or (0.0, 0.0))
         stands = self._find_missing_ground(state, places, down, centre, footholds, dt)
         self._decide_on_support(places, down, due, centre, dt=dt, swing_time=timing.swing_time)
         self.body.roughness.decay(0.0 if standing else dt * timing.frequency)

@@ -82,7 +82,7 @@ class Reach:
             self._key, self._rest, strokes = key, rest, complex(x, y) + 1j * arc / _TURNING_ARM * rest
             self.stroke, self.strokes = float(np.abs(strokes).max()) / 2, strokes
             lowest, highest = reachable_heights(self._robot, posture, rest, strokes)
-            # Ends of strokes beyond the limits of the coxa are not walked; a leg wholly out of reach keeps what is known.
+            # Ends of strokes beyond the limits of the coxa are not walked; a leg that reaches nowhere keeps its reach.
             walked = lowest < highest
             kept = ~walked.any(axis=0)
             least = np.where(walked, lowest, -np.inf).max(axis=0)

@@ -6,7 +6,7 @@ import cmath
 import math
 from collections.abc import Sequence
 
-__all__ = ["HALTING", "Support", "holds"]
+__all__ = ["HALTING", "Support", "along_gravity", "holds"]
 
 # Rates at which the pace falls and rises [1/s].
 _FALL, _RISE = 10.0, 6.0
@@ -33,6 +33,20 @@ def holds(feet: Sequence[complex], centre: complex) -> bool:
         return False
     gaps = [after - before for before, after in zip(angles, [*angles[1:], angles[0] + math.tau], strict=True)]
     return max(gaps) < math.pi - _LEAST_ANGLE
+
+
+def along_gravity(centre: complex, position: Sequence[float], tilt: tuple[float, float]) -> complex:
+    """Return where a point of the body is above its feet along gravity, x + iy in the heading frame [m].
+
+    Parameters
+    ----------
+    centre, position : complex, (x, y, z)
+        The point in the body's frame; position of the body, z over the feet [m].
+    tilt : (roll, pitch)
+        By how much the body is tilted with its feet [rad].
+    """
+    (x, y, height), (roll, pitch) = position, tilt
+    return centre + complex(x + height * math.tan(pitch), y - height * math.tan(roll))
 
 
 class Support:
