@@ -168,4 +168,4 @@ def tables(asked: argparse.Namespace) -> dict[str, str]:
 
 if __name__ == "__main__":
     grounds, cases = (Several(names, choices=names) for names in (GROUNDS, CASES))
-    write_tables(__doc__, PAGE, tables, robots=Several(ROBOTS), grounds=grounds, cases=cases, seeds=3, jobs=1)
+    write_tables(__doc__, PAGE, tables, robots=Several(ROBOTS), grounds=grounds, cases=cases, seeds=10, jobs=1)
