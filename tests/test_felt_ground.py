@@ -199,18 +199,18 @@ def test_ground_may_be_deeper_at_once_and_more_so_where_roughness_lasts():
     roughness, allowed = Roughness(tarsus.GroundAdaptation()), []
     for _ in range(8):
         roughness.landed(0.048)
-        allowed.append(roughness.depth_allowance)
+        allowed.append(roughness.deeper)
         roughness.decay(0.5)
     assert sorted(allowed) == allowed
     # A first foothold off the expected ground allows for 30 mm, a cycle later too, four cycles of them for 50 mm.
     assert allowed[0] == allowed[2] == 0.03
     assert allowed[-1] == 0.05
     roughness.decay(20.0)
-    assert roughness.depth_allowance < 0.001
+    assert roughness.deeper < 0.001
     half = Roughness(tarsus.GroundAdaptation(), scale=0.5)
     half.landed(0.2)
     half.decay(4.0)
-    assert half.depth_allowance == 0.025
+    assert half.deeper == 0.025
 
 
 def test_roughness_rises_at_once_falls_slowly_and_is_bounded():

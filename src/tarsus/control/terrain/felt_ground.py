@@ -242,7 +242,7 @@ class FeltGround:
     ) -> list[bool]:
         """Decide where feet step that find no ground; return which stand, or would, with the robot in the air."""
         contacts, missing, rest = self.contacts, self.missing, footholds.rest.tolist()
-        deeper = self.body.roughness.depth_allowance
+        deeper = self.body.roughness.deeper
         feet, tips = (places, down, contacts.standing), bool(missing.tips or missing.places)
         near = not_sunk(state, self.ground, *feet, reach=self.body.reach, deeper=deeper, tips=tips)
         contacts.find_open(near, places, centre, self.measured.attitude, dt)

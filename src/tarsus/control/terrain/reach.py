@@ -85,8 +85,8 @@ class Reach:
             # Ends of strokes beyond the limits of the coxa are not walked; a leg that reaches nowhere keeps its reach.
             walked = lowest < highest
             kept = ~walked.any(axis=0)
-            least = np.where(walked, lowest, -np.inf).max(axis=0)
-            most = np.where(walked, highest, np.inf).min(axis=0)
+            least = lowest.max(axis=0, where=walked, initial=-np.inf)
+            most = highest.min(axis=0, where=walked, initial=np.inf)
             self.lowest = np.where(kept, self.lowest, least).tolist()
             self.highest = np.where(kept, self.highest, most).tolist()
             self._tops = [tuple(heights) for heights in highest.T.tolist()]

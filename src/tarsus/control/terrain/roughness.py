@@ -137,7 +137,7 @@ class Roughness:
         return self._share(0.0, _ROUGH) * self.adaptation.drawn_in
 
     @property
-    def depth_allowance(self) -> float:
+    def deeper(self) -> float:
         """How much deeper ground may be than expected [m]."""
         once = min(_DEEPER * self.value, self._scale * _DEEPEST)
         return max(once, min(_DEEPER * self._lasting, self._scale * _LASTING_DEEPEST))

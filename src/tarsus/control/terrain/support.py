@@ -43,7 +43,7 @@ def along_gravity(centre: complex, position: Sequence[float], tilt: tuple[float,
     centre, position : complex, (x, y, z)
         The point in the body's frame; position of the body, z over the feet [m].
     tilt : (roll, pitch)
-        By how much the body is tilted with its feet [rad].
+        By how much the body is tilted more than commanded [rad].
     """
     (x, y, height), (roll, pitch) = position, tilt
     return centre + complex(x + height * math.tan(pitch), y - height * math.tan(roll))

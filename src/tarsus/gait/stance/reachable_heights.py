@@ -31,6 +31,8 @@ def reachable_heights(
 ) -> tuple[Float[np.ndarray, "3 legs"], Float[np.ndarray, "3 legs"]]:
     """Return the least and the greatest height of each foot at the places of its stroke, in the heading frame [m].
 
+    Both are 0 at a place that the leg does not reach on level ground.
+
     Parameters
     ----------
     robot : Robot
