@@ -18,11 +18,13 @@ from tarsus.control.terrain.foot_contacts import FootContacts
 from tarsus.control.terrain.reach import Reach
 from tarsus.control.terrain.roughness import Roughness
 from tarsus.control.terrain.support import Support, along_gravity, holds
-from tarsus.control.walk.felt_feet import FeltFoot, FeltInputs, GroundUnder
+from tarsus.control.walk.felt_feet import FeltFoot, FeltInputs, GroundUnder, travel_share
 from tarsus.control.walk.vertical_motion import _searching, _swinging
 from tarsus.control.walk_controller import WalkController
 from tarsus.gait.foot_plane import FootPlane, fitted_plane
 from tarsus.gait.stance.reachable_heights import reachable_heights
+from tarsus.simulation import SensorSuite, SimulatedPlant
+from tarsus.simulation.sensors.suite import FootSwitch, Sensor
 
 STRIDER = tarsus.load_robot("strider")
 FEET = [0.27 + 0.15j, 0.31j, -0.27 + 0.15j, -0.27 - 0.15j, -0.31j, 0.27 - 0.15j]
@@ -506,6 +508,43 @@ def test_feet_go_down_sooner_where_contacts_are_known_late():
         for late in (0.0, 0.05, 1.0)
     ]
     assert speeds == pytest.approx([-0.06 / 0.25, -0.06 / 0.2, -0.06 / 0.1])
+
+
+@pytest.mark.parametrize(
+    ("late", "depth", "over", "fastest"),
+    [
+        (0.0, 0.0, 0.0, 0.4),
+        (0.05, 0.0, 0.02, 0.4),
+        (0.05, 0.0, 0.0, 0.08),
+        (0.05, 0.01, 0.0, 0.16),
+        (0.02, 0.0, 0.0, 0.2),
+    ],
+)
+def test_near_the_ground_feet_go_down_more_slowly_the_later_contacts_are_known(late, depth, over, fastest):
+    felt = FeltInputs([], [], [True] * 2, depth, 0.0, (0.0, 0.0), 0j, 0.0, 0j, 0.8, 1.0, 0.03, 0.4, late, {})
+    under, high = GroundUnder(0.0, lowest=-0.2, highest=0.2), FeltFoot(top=0.2, top_phase=0.42)
+    _, swings = _swinging(over, high, under, felt, 0.1, (0.9, 0.5, 0.0, 0j))
+    assert swings.speed == pytest.approx(-fastest)
+    _, _, searches = _searching(over, FeltFoot(), 0j, 0.0, under, felt, 0.1)
+    assert searches == pytest.approx(-min(fastest, max(0.15, over / 0.1)))
+
+
+def test_feet_whose_contacts_are_known_late_have_travelled_sooner():
+    shares = [travel_share(far, late) for far, late in ((0.3, 0.0), (1.0, 0.0), (1.0, 0.1), (1.0, 0.9))]
+    assert shares == pytest.approx([0.75, 0.92, 0.82, 0.5])
+
+
+@pytest.mark.parametrize("name", ["strider", "makeyourpet"])
+def test_contacts_that_come_late_make_even_ground_no_rough_one(name):
+    late = SensorSuite(contacts=FootSwitch(delay=0.05), attitude=Sensor(delay=0.05))
+    robot = tarsus.load_robot(name)
+    plant, controller = SimulatedPlant(robot, sensors=late), tarsus.RobotController(robot)
+    output, worst, speed = controller.output, 0.0, 0.5 * WalkController(robot).top_speed((1, 0, 0))
+    plant.start(output)
+    for tick in range(800):
+        output = controller.step((speed, 0.0, 0.0), 0.01, plant.step(output, 0.01))
+        worst = max(worst, controller._activity.controller._walk.ground.body.roughness.value) if tick > 400 else 0.0
+    assert worst < 0.003
 
 
 @pytest.mark.parametrize(

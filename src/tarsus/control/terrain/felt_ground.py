@@ -24,7 +24,7 @@ from tarsus.control.terrain.missing_ground import SLOW, MissingGround
 from tarsus.control.terrain.roughness import GroundAdaptation
 from tarsus.control.terrain.support import Support, along_gravity
 from tarsus.control.transition.foothold_transfer import FootholdTransfer
-from tarsus.control.walk.felt_feet import FeltFoot, FeltInputs, GroundUnder
+from tarsus.control.walk.felt_feet import FeltFoot, FeltInputs, GroundUnder, travel_share
 from tarsus.control.walk.ground_pose import body_posture
 from tarsus.control.walk.state import GaitState
 from tarsus.control.walk.step_timing import StepTiming
@@ -40,8 +40,6 @@ __all__ = ["FeltGround"]
 
 # How far below the expected ground feet go by the end of their swing, over the roughness.
 _DEPTH_SHARE = 0.6
-# Fraction of the swing in which a foot travels, up to half the longest stroke and with the longest one.
-_SLOW_TRAVEL, _FAST_TRAVEL = 0.75, 0.92
 # How soon feet lift off that are not lowered any more; lag of the joints of usual servos: more makes contacts late [s].
 _LEAVING, _USUAL_LAG = 0.1, 0.03
 # Speed with which feet look for the ground while others hold a robot that stands [m/s], and how far below the expected
@@ -199,17 +197,18 @@ class FeltGround:
         for leg, place in enumerate(places):
             if steps[leg] and (lifts[leg] or not (down[leg] and stands[leg])):
                 under[leg] = self._under(state, leg, place, down=down[leg])
-        inputs = self._feet_inputs(state, (under, stands, steps), max(*footholds.placement_radii, 1e-6))
+        far = self.body.reach.stroke / max(*footholds.placement_radii, 1e-6)
+        travel = travel_share(far, self.contacts.age / timing.swing_time)
+        inputs = self._feet_inputs(state, (under, stands, steps), travel)
         # As long as all is as planned, it stays: yielding feet and a walk that slows down are looked at in each tick.
         self._inputs = None if self._loads.compliant or self.support.pace < 1.0 else inputs
         return inputs
 
     def _feet_inputs(
-        self, state: GaitState, feet: tuple[list[GroundUnder | None], list[bool], list[bool]], radius: float
+        self, state: GaitState, feet: tuple[list[GroundUnder | None], list[bool], list[bool]], travel: float
     ) -> FeltInputs:
-        """Return what the feet are given; radius is the greatest distance at which one may be put down [m]."""
-        body, far = self.body, max(2 * self.body.reach.stroke / radius - 1, 0.0)
-        gently = self._still and self.support.held and bool(state.down.all())
+        """Return what the feet are given, which travel in this fraction of their swings."""
+        body, gently = self.body, self._still and self.support.held and bool(state.down.all())
         # The body levels about its middle, which its feet pass below.
         passing = complex(-body.rates.turn[1], body.rates.turn[0]) * float(state.posture.value[2])
         return FeltInputs(
@@ -220,7 +219,7 @@ class FeltGround:
             drift=body.drift + self.missing.held(passing),
             yaw_rate=body.heading.rate,
             back=self.missing.back,
-            travel=_SLOW_TRAVEL + (_FAST_TRAVEL - _SLOW_TRAVEL) * far,
+            travel=travel,
             pace=self.support.pace,
             swing_height=float(state.posture.value[SWING_HEIGHT]) + body.roughness.swing_rise,
             lowering=body.reach.scale * (_GENTLE if gently else self._loads.fastest_descent),

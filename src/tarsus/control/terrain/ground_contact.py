@@ -90,7 +90,8 @@ def met_ground(
             tells = contacts.lifted[leg] and not contacts.is_open(leg)
             if tells and not contacts.touches(leg):
                 continue
-            over = float(state.ground_height[leg]) - elevation
+            # It touched the ground a moment ago, when it was higher.
+            over = float(state.ground_height[leg]) - elevation - tells * contacts.age * min(foot.speed, 0.0)
             expected = ground.at(places[leg])
             if tells or over <= expected + _ROUNDING:
                 if tells:

@@ -6,7 +6,10 @@ import math
 from collections.abc import Mapping
 from typing import NamedTuple
 
-__all__ = ["FeltFoot", "FeltInputs", "GroundUnder"]
+__all__ = ["FeltFoot", "FeltInputs", "GroundUnder", "travel_share"]
+
+# Fraction of the swing in which a foot travels, up to half the longest stroke and with the longest one; at least.
+_SLOW_TRAVEL, _FAST_TRAVEL, _LEAST_TRAVEL = 0.75, 0.92, 0.5
 
 
 class FeltFoot(NamedTuple):
@@ -125,3 +128,19 @@ class FeltInputs(NamedTuple):
     in_air: bool = False
     scale: float = 1.0
     exact: bool = False
+
+
+def travel_share(far: float, late: float) -> float:
+    """Return the fraction of its swing in which a foot travels.
+
+    A foot whose contact is known late goes down sooner: it is not to move over the ground until then.
+
+    Parameters
+    ----------
+    far : float
+        Half the longest stroke, over the greatest distance from its rest foothold at which a foot may be put down.
+    late : float
+        Time from a foot's contact until that is known, over the duration of a swing.
+    """
+    share = _SLOW_TRAVEL + (_FAST_TRAVEL - _SLOW_TRAVEL) * max(2 * far - 1, 0.0)
+    return max(share - late, _LEAST_TRAVEL)

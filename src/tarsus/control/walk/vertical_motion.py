@@ -40,6 +40,9 @@ _LOWERING, _SEARCHING = 0.12, 0.15
 _LOSING, _OTHERS, _NEAR = 0.04, 3, 0.004
 # Time in which a foot that should stand goes down to the expected ground [s].
 _SEARCH_TIME = 0.1
+# From how high over the expected ground on a foot whose contact is known late goes down more slowly, and how far it
+# goes into the ground at most until then [m], besides so much of its depth below the expected ground.
+_NEARS, _PRESSED, _PRESSED_DEEP = 0.007, 0.004, 0.4
 # Room over known ground on the way of a foot that goes down [m].
 _OVER = 0.015
 # How far past a collision a foot goes down again [m].
@@ -122,7 +125,7 @@ def _searching(
         loses = math.isnan(foot.top) and over < -felt.scale * _NEAR and sum(felt.stands) >= _OTHERS
         rough = min(felt.depth / _ROUGH, 1.0)
         slowest = felt.scale * (_LOSING + rough * (_SEARCHING - _LOSING)) if loses else least
-        wanted -= min(max(slowest, over / _SEARCH_TIME), fastest)
+        wanted -= min(max(slowest, over / _SEARCH_TIME), fastest, _fastest_contact(over, felt))
         after = _towards(speed, wanted, _FOOT_ACCELERATION * dt)
         height, after = _no_lower(height + (speed + after) / 2 * dt, after, height, under.lowest)
         return height, place, after
@@ -165,7 +168,8 @@ def _swinging(
         height, speed, acceleration = quintic((height, speed, acceleration), top, whole, time / whole)
         return height, FeltFoot(speed, acceleration, top, top_phase, slide, drawn_back)
     descent = (top - under.expected + felt.depth) / (part * swing_time) * felt.pace
-    after = _towards(speed, -min(max(felt.scale * _LOWERING, descent), felt.lowering), _FOOT_ACCELERATION * dt)
+    fastest = min(max(felt.scale * _LOWERING, descent), felt.lowering, _fastest_contact(height - under.expected, felt))
+    after = _towards(speed, -fastest, _FOOT_ACCELERATION * dt)
     # Over higher ground on its way it stays.
     lowest = under.lowest
     if under.way > under.expected + _OVER:
@@ -174,6 +178,12 @@ def _swinging(
         lowest = max(lowest, height)
     height, after = _no_lower(height + (speed + after) / 2 * dt, after, height, lowest)
     return height, FeltFoot(after, 0.0, top, top_phase, slide, drawn_back)
+
+
+def _fastest_contact(over: float, felt: FeltInputs) -> float:
+    """Return the greatest speed of a foot so high over the expected ground: it goes on until its contact is known."""
+    nears = felt.late > 0.0 and over < felt.scale * _NEARS
+    return (felt.scale * _PRESSED + _PRESSED_DEEP * felt.depth) / felt.late if nears else math.inf
 
 
 def _no_lower(height: float, speed: float, before: float, lowest: float) -> tuple[float, float]:
