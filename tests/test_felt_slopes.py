@@ -48,6 +48,8 @@ def test_legs_reach_as_much_of_a_slope_as_their_heights_allow():
     assert reachable_share(rises, [-0.05] * 3, [0.05] * 3) == pytest.approx(0.5)
     assert reachable_share(rises, [-0.02] * 3, [0.1] * 3) == pytest.approx(0.6)
     assert reachable_share(rises, [-0.01] * 3, [-0.02] * 3) == 0.0
+    # A slope that rises by 50 mm under the body and may by 20 mm, and by -100 mm at a foot that reaches 55 mm down.
+    assert reachable_share([*rises, 0.05], [-0.055] * 3 + [-math.inf], [0.2] * 3 + [0.02]) == pytest.approx(0.5)
 
 
 def test_a_plane_is_levelled_by_the_attitude_of_the_body():
@@ -127,10 +129,10 @@ def test_steps_are_longer_and_fewer_on_slopes(slope, most, longer):
 
 def test_the_body_is_raised_where_it_would_touch_a_slope():
     stance, plane = SlopeStance(preset("strider")), FootPlane(0.0, 0.4, 0.0)
-    assert stance.least_raise(FootPlane(), 0.02) <= 0.0
+    assert stance.underside(FootPlane(), 0.02) == (0.0, 0.0)
     # Half a length of 120 mm, half a height of 25 mm.
-    assert stance.least_raise(plane, 0.08) == pytest.approx(0.4 * 0.12 + 0.025 + 0.04 - 0.08)
-    assert stance.least_raise(plane, 0.02) == pytest.approx(0.4 * 0.12)
+    assert stance.underside(plane, 0.08) == pytest.approx((0.4 * 0.12, 0.08 - 0.025 - 0.04))
+    assert stance.underside(plane, 0.02) == pytest.approx((0.4 * 0.12, 0.0))
     posture = PostureFeedback("level")
     for _ in range(100):
         posture.fit_to_reach(

@@ -58,8 +58,6 @@ class PostureFeedback:
     ----------
     raised : float
         How much higher over the ground than commanded the body is to be [m].
-    short : float
-        How far the ground is out of the legs' reach in the attitude to keep [m].
     given_way : float
         Share of the slope that the body follows because the legs do not reach otherwise, 0 to 1.
     kept : float
@@ -69,7 +67,7 @@ class PostureFeedback:
     def __init__(self, levelling: Levelling | None, *, scale: float = 1.0) -> None:
         self._scale = scale
         self._share = None if levelling is None else LEVELLING_SHARES[levelling]
-        self.raised = self.short = self.given_way = 0.0
+        self.raised = self.given_way = 0.0
         self.kept = 0.0 if self._share is None else 1 - self._share
         self._rests = False
 
@@ -101,9 +99,7 @@ class PostureFeedback:
         least = max(raises[0], *(rise - high for high, rise in zip(reach[1], rises[1], strict=True)))
         wanted = max(min(raises[1], most), least) if most >= least else (most + least) / 2
         wanted = max(wanted, -_MOST_LOWER * height)
-        self.short = max(wanted - most, least - wanted, 0.0)
-        steepest = max(*map(abs, (*rises[0], *rises[1])), 1e-6)
-        self.given_way = max(1 - share, min(self.short / steepest, 1.0))
+        self.given_way = 1 - share
         most = self._scale * dt
         self.raised += min(max(wanted - self.raised, -_LOWERING * most), _RAISING * most)
 

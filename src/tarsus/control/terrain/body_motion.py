@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import cmath
+import math
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
@@ -229,8 +230,12 @@ class BodyMotion:
         hangs = any(seeks and reach.hangs(leg, over[leg]) for leg, seeks in enumerate(seeking))
         level = plane.levelled(self.tilt)
         highest = reach.highest_stand(swing_height, hangs=hangs)
-        share = reachable_share([level.at(foot) for foot in rest.tolist()], reach.lowest, highest)
+        # The slope may rise no higher under the body than under a foot: in part, the body follows it there, too.
+        under, clear = self.stance.underside(level, height)
+        slope = [*map(level.at, rest.tolist()), under]
+        share = reachable_share(slope, [*reach.lowest, -math.inf], [*highest, clear])
         wanted = max(self.roughness.body_rise, self._ground.body_rise(self.stance.half, height))
-        raises = (self.stance.least_raise(plane, height), wanted)
+        under, clear = self.stance.underside(plane, height)
+        raises = (under - clear, wanted)
         reached = [low + self.lowered for low in reach.lowest], highest
         self._posture.fit_to_reach(rises, raises, dt, reach=reached, height=height, share=share)

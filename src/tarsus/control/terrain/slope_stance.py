@@ -99,13 +99,13 @@ class SlopeStance:
         along = (velocity * self.uphill.conjugate()).real
         return velocity - along * self.uphill / abs(self.uphill) ** 2 if along < 0 else velocity
 
-    def least_raise(self, plane: FootPlane, height: float) -> float:
-        """Return how much higher than commanded a body is at least whose underside is clear of a slope [m].
+    def underside(self, plane: FootPlane, height: float) -> tuple[float, float]:
+        """Return how far a slope rises under the edges of the body, and how far it may rise there, as to a foot [m].
 
         Parameters
         ----------
         plane, height : FootPlane, float
             The plane of the feet, in the heading frame; commanded height of the body [m].
         """
-        drop = abs(plane.slope_x) * self.half[0] + abs(plane.slope_y) * self.half[1]
-        return float(drop + min(self.half[2] + _ROOM - height, 0.0))
+        rise = abs(plane.slope_x) * self.half[0] + abs(plane.slope_y) * self.half[1]
+        return float(rise), float(max(height - self.half[2] - _ROOM, 0.0))
