@@ -17,7 +17,7 @@ import numpy as np
 import tarsus
 from estimated_contacts import JOINTS
 from page_tables import measured, write_tables
-from rough_ground import CLEAR, PAGE, switches
+from rough_ground import CLEAR, LIES, PAGE, switches
 from sensor_faults import LATE, ONE_DEGREE, with_sensors
 from tarsus.simulation import SensorSuite, SimulatedPlant, terrain
 
@@ -104,13 +104,22 @@ class Minute(NamedTuple):
 
 
 class Outcome(NamedTuple):
-    """What became of a minute: when the robot fell, what the guard stopped, what was raised; empty for nothing."""
+    """What became of a minute: when the robot fell, what the guard stopped, what was raised; empty for nothing.
+
+    The body touches the ground for a moment at some times, each with how long it does [s].
+    """
 
     minute: Minute
     fell: float = math.nan
+    touches: tuple[tuple[float, float], ...] = ()
     stopped: tuple[str, ...] = ()
     raised: str = ""
     way: float = 0.0
+
+    @property
+    def mishap(self) -> bool:
+        """Whether the robot has fallen, or its body has touched the ground."""
+        return not math.isnan(self.fell) or bool(self.touches)
 
 
 def commanded(draw: np.random.Generator, robot: tarsus.Robot, home: complex | None, top: float) -> tarsus.Command:
@@ -157,6 +166,8 @@ def _lived(minute: Minute) -> Outcome:
     output, command, due = controller.output, tarsus.Command(), 0.0
     plant.start(output)
     stopped: list[str] = []
+    touches: list[tuple[float, float]] = []
+    lying = 0.0
     way, before = 0.0, complex(*plant.state.body.position[:2])
     weight = float(plant.mj_model.body_mass.sum()) * 9.80665
     for tick in range(round(MINUTE / DT)):
@@ -164,9 +175,12 @@ def _lived(minute: Minute) -> Outcome:
         at = complex(*state.body.position[:2].tolist())
         roll, pitch, yaw = np.asarray(state.body.rpy).tolist()
         way, before = way + abs(at - before), at
-        upright = output.state.upright
-        if math.hypot(roll, pitch) > FALLEN or (state.body_touches and upright):
-            return Outcome(minute, time, tuple(stopped), way=way)
+        lies = state.body_touches and output.state.upright
+        if lying and not lies:
+            touches.append((time - lying, lying))
+        lying = lying + DT if lies else 0.0
+        if math.hypot(roll, pitch) > FALLEN or lying > LIES:
+            return Outcome(minute, time, tuple(touches), tuple(stopped), way=way)
         if time >= due:
             home = -at * np.exp(-1j * yaw) if abs(at) > FAR else None
             command, due = commanded(draw, robot, home, top), time + draw.uniform(2.0, 6.0)
@@ -189,27 +203,38 @@ def _lived(minute: Minute) -> Outcome:
             readings = dataclasses.replace(readings, contacts=contacts)
         output = controller.step(command, DT, readings)
         stopped += [each.text() for each in output.interventions]
-    return Outcome(minute, stopped=tuple(stopped), way=way)
+    return Outcome(minute, touches=tuple(touches), stopped=tuple(stopped), way=way)
 
 
-def cause(fall: Outcome) -> str:
-    """Return what a fall takes: the same minute is repeated without the faults, and on level ground."""
-    repeated = {"the faults": fall.minute.faultless, "the ground": fall.minute.level}
-    needed = [name for name, minute in repeated.items() if minute != fall.minute and math.isnan(lived(minute).fell)]
+def cause(mishap: Outcome) -> str:
+    """Return what a fall or touch takes: the minute is repeated without the faults, and on level ground."""
+    repeated = {"the faults": mishap.minute.faultless, "the ground": mishap.minute.level}
+    needed = [name for name, minute in repeated.items() if minute != mishap.minute and not lived(minute).mishap]
     return " and ".join(needed) or "neither faults nor ground"
 
 
 def table(outcomes: list[Outcome]) -> str:
     """Return the table of the outcomes."""
     falls = [each for each in outcomes if not math.isnan(each.fell)]
+    grazes = [each for each in outcomes if each.touches and each not in falls]
     raised = [f"{each.minute.text()}: {each.raised}" for each in outcomes if each.raised]
     refused = [f"{each.minute.text()}: {text}" for each in outcomes for text in each.stopped]
     fallen = [f"{each.minute.text()}, after {each.fell:.0f} s; it takes {cause(each)}" for each in falls]
+    touched = [
+        f"{each.minute.text()}, {len(each.touches)} from {each.touches[0][0]:.0f} s on, for"
+        f" {1e3 * max(each.touches, key=lambda touch: touch[1])[1]:.0f} ms at most; it takes {cause(each)}"
+        for each in grazes
+    ]
     rows = [
         f"| minutes, way | {len(outcomes)}, {sum(each.way for each in outcomes):.0f} m |",
         *(
             f"| {title} | {'<br>'.join([str(len(lines)), *lines])} |"
-            for title, lines in (("exceptions", raised), ("angles that the guard refused", refused), ("falls", fallen))
+            for title, lines in (
+                ("exceptions", raised),
+                ("angles that the guard refused", refused),
+                ("falls", fallen),
+                ("minutes in which the body touches the ground", touched),
+            )
         ),
     ]
     return "\n".join(["| random walks | |", "|---|---|", *rows])
@@ -222,6 +247,9 @@ def tables(asked: argparse.Namespace) -> dict[str, str]:
     for outcome in measured(lived, minutes, asked.jobs):
         outcomes.append(outcome)
         fell = "" if math.isnan(outcome.fell) else f"fell after {outcome.fell:.1f} s"
+        fell += f" touches {[(round(when, 2), round(long, 2)) for when, long in outcome.touches]}" * bool(
+            outcome.touches
+        )
         print(outcome.minute.text(), f"{outcome.way:.1f} m", fell, *outcome.stopped[:1], outcome.raised, flush=True)
     return {"random hour": table(outcomes)}
 
