@@ -22,12 +22,9 @@ from sensor_faults import LATE, ONE_DEGREE, with_sensors
 from tarsus.simulation import SensorSuite, SimulatedPlant, terrain
 
 DT, MINUTE = 0.01, 60.0
-# Greatest heights [mm] and slopes [deg] over which the tables of the page have no falls.
-HELD = {
-    "strider": {"smooth": 60, "blocks": 60, "step": 40, "ramp": 20},
-    "phantomx": {"smooth": 40, "blocks": 30, "step": 40, "ramp": 10},
-    "makeyourpet": {"smooth": 60, "blocks": 40, "step": 40, "ramp": 10},
-}
+# Greatest heights [mm] and slopes [deg].
+GROUNDS = {"smooth": 60, "blocks": 60, "step": 40, "ramp": 20}
+ROBOTS = ("makeyourpet", "phantomx", "strider")
 GAITS = ("tripod", "tetrapod", "ripple", "wave")
 SENSORS: dict[str, Any] = {
     "hobby": SensorSuite.named("hobby"),
@@ -60,9 +57,9 @@ class Minute(NamedTuple):
     def drawn(cls, seed: int) -> Minute:
         """Return what a seed draws."""
         draw = np.random.default_rng(seed)
-        robot = str(draw.choice(sorted(HELD)))
-        ground = str(draw.choice(["flat", *HELD[robot]]))
-        height = float(draw.uniform(0.3, 1.0)) * HELD[robot].get(ground, 0)
+        robot = str(draw.choice(ROBOTS))
+        ground = str(draw.choice(["flat", *GROUNDS]))
+        height = float(draw.uniform(0.3, 1.0)) * GROUNDS.get(ground, 0)
         height *= -1.0 if ground == "step" and draw.random() < 1 / 2 else 1.0
         sensors = str(draw.choice(["ideal", *SENSORS]))
         pushes = tuple(sorted(draw.uniform(2, MINUTE, 3).tolist())) if draw.random() < 1 / 3 else ()
