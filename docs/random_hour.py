@@ -17,14 +17,13 @@ import numpy as np
 import tarsus
 from estimated_contacts import JOINTS
 from page_tables import measured, write_tables
-from rough_ground import CLEAR, LIES, PAGE, switches
+from rough_ground import CLEAR, LIES, PAGE, ROBOTS, switches
 from sensor_faults import LATE, ONE_DEGREE, with_sensors
 from tarsus.simulation import SensorSuite, SimulatedPlant, terrain
 
 DT, MINUTE = 0.01, 60.0
 # Greatest heights [mm] and slopes [deg].
 GROUNDS = {"smooth": 60, "blocks": 60, "step": 40, "ramp": 20}
-ROBOTS = ("makeyourpet", "phantomx", "strider")
 GAITS = ("tripod", "tetrapod", "ripple", "wave")
 SENSORS: dict[str, Any] = {
     "hobby": SensorSuite.named("hobby"),
@@ -57,7 +56,7 @@ class Minute(NamedTuple):
     def drawn(cls, seed: int) -> Minute:
         """Return what a seed draws."""
         draw = np.random.default_rng(seed)
-        robot = str(draw.choice(ROBOTS))
+        robot = str(draw.choice(sorted(ROBOTS)))
         ground = str(draw.choice(["flat", *GROUNDS]))
         height = float(draw.uniform(0.3, 1.0)) * GROUNDS.get(ground, 0)
         height *= -1.0 if ground == "step" and draw.random() < 1 / 2 else 1.0
@@ -103,7 +102,7 @@ class Minute(NamedTuple):
 class Outcome(NamedTuple):
     """What became of a minute: when the robot fell, what the guard stopped, what was raised; empty for nothing.
 
-    The body touches the ground for a moment at some times, each with how long it does [s].
+    Each touch of the body that is no fall has its time and its duration [s].
     """
 
     minute: Minute
@@ -200,6 +199,8 @@ def _lived(minute: Minute) -> Outcome:
             readings = dataclasses.replace(readings, contacts=contacts)
         output = controller.step(command, DT, readings)
         stopped += [each.text() for each in output.interventions]
+    if lying:
+        touches.append((MINUTE - lying, lying))
     return Outcome(minute, touches=tuple(touches), stopped=tuple(stopped), way=way)
 
 
@@ -213,14 +214,14 @@ def cause(mishap: Outcome) -> str:
 def table(outcomes: list[Outcome]) -> str:
     """Return the table of the outcomes."""
     falls = [each for each in outcomes if not math.isnan(each.fell)]
-    grazes = [each for each in outcomes if each.touches and each not in falls]
     raised = [f"{each.minute.text()}: {each.raised}" for each in outcomes if each.raised]
     refused = [f"{each.minute.text()}: {text}" for each in outcomes for text in each.stopped]
     fallen = [f"{each.minute.text()}, after {each.fell:.0f} s; it takes {cause(each)}" for each in falls]
     touched = [
         f"{each.minute.text()}, {len(each.touches)} from {each.touches[0][0]:.0f} s on, for"
-        f" {1e3 * max(each.touches, key=lambda touch: touch[1])[1]:.0f} ms at most; it takes {cause(each)}"
-        for each in grazes
+        f" {1e3 * max(duration for _, duration in each.touches):.0f} ms at most; it takes {cause(each)}"
+        for each in outcomes
+        if each.touches and math.isnan(each.fell)
     ]
     rows = [
         f"| minutes, way | {len(outcomes)}, {sum(each.way for each in outcomes):.0f} m |",
@@ -244,10 +245,16 @@ def tables(asked: argparse.Namespace) -> dict[str, str]:
     for outcome in measured(lived, minutes, asked.jobs):
         outcomes.append(outcome)
         fell = "" if math.isnan(outcome.fell) else f"fell after {outcome.fell:.1f} s"
-        fell += f" touches {[(round(when, 2), round(long, 2)) for when, long in outcome.touches]}" * bool(
-            outcome.touches
+        touches = f"touches {len(outcome.touches)} times" if outcome.touches else ""
+        print(
+            outcome.minute.text(),
+            f"{outcome.way:.1f} m",
+            fell,
+            touches,
+            *outcome.stopped[:1],
+            outcome.raised,
+            flush=True,
         )
-        print(outcome.minute.text(), f"{outcome.way:.1f} m", fell, *outcome.stopped[:1], outcome.raised, flush=True)
     return {"random hour": table(outcomes)}
 
 

@@ -59,7 +59,7 @@ class PostureFeedback:
     raised : float
         How much higher over the ground than commanded the body is to be [m].
     given_way : float
-        Share of the slope that the body follows because the legs do not reach otherwise, 0 to 1.
+        Share of the slope that the body follows as a level one has no room over it or its legs do not reach, 0 to 1.
     kept : float
         Share of a measured tilt that is turned back, 0 to 1.
     """
@@ -92,7 +92,7 @@ class PostureFeedback:
         dt, reach : float, tuple of sequence of float
             Length of the tick [s]; least and greatest height of each foot [m].
         height, share : float
-            Commanded height of the body [m]; share of the slope that the legs reach, 0 to 1.
+            Commanded height of the body [m]; share of the slope that legs and body have room for, 0 to 1.
         """
         # Feet are between their least and greatest heights for heights over the ground between these.
         most = min(rise - low for low, rise in zip(reach[0], rises[0], strict=True))

@@ -230,12 +230,12 @@ class BodyMotion:
         hangs = any(seeks and reach.hangs(leg, over[leg]) for leg, seeks in enumerate(seeking))
         level = plane.levelled(self.tilt)
         highest = reach.highest_stand(swing_height, hangs=hangs)
-        # The slope may rise no higher under the body than under a foot: in part, the body follows it there, too.
-        under, clear = self.stance.underside(level, height)
-        slope = [*map(level.at, rest.tolist()), under]
-        share = reachable_share(slope, [*reach.lowest, -math.inf], [*highest, clear])
+        # The underside of the body limits the slope like a foot that may be at any depth.
+        rise, clearance = self.stance.underside(level, height)
+        slope = [*map(level.at, rest.tolist()), rise]
+        share = reachable_share(slope, [*reach.lowest, -math.inf], [*highest, clearance])
         wanted = max(self.roughness.body_rise, self._ground.body_rise(self.stance.half, height))
-        under, clear = self.stance.underside(plane, height)
-        raises = (under - clear, wanted)
+        rise, clearance = self.stance.underside(plane, height)
+        raises = (rise - clearance, wanted)
         reached = [low + self.lowered for low in reach.lowest], highest
         self._posture.fit_to_reach(rises, raises, dt, reach=reached, height=height, share=share)

@@ -100,7 +100,7 @@ class SlopeStance:
         return velocity - along * self.uphill / abs(self.uphill) ** 2 if along < 0 else velocity
 
     def underside(self, plane: FootPlane, height: float) -> tuple[float, float]:
-        """Return how far a slope rises under the edges of the body, and how far it may rise there, as to a foot [m].
+        """Return how far a slope rises at most under the edges of the body, and how far it may rise there [m].
 
         Parameters
         ----------

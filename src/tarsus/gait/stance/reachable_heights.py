@@ -64,7 +64,7 @@ def reachable_share(rises: Sequence[float], lowest: Sequence[float], highest: Se
     Parameters
     ----------
     rises : sequence of float
-        Height of the slope at each foot, over that at the body [m].
+        Height of the slope at each foot, or other part of the robot, over that at the body [m].
     lowest, highest : sequence of float
         Least and greatest height of each foot [m].
     """
