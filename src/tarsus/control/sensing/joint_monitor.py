@@ -16,6 +16,8 @@ if TYPE_CHECKING:
 __all__ = ["JointMonitor"]
 
 _Measured: TypeAlias = "Sequence[Vector | None] | None"
+# How often joints are looked at [s].
+_PERIOD, _ROUNDING = 0.04, 1e-6
 # A joint may lag behind its command for so long [s].
 _LAG = 0.15
 # Error beyond which a servo gives more than its stall torque, if it works [rad]. Hobby servos give it at 0.1 rad.
@@ -63,8 +65,8 @@ class JointMonitor:
         self.failed: dict[int, int] = {}
         self._commands: deque[tuple[float, Float[np.ndarray, "legs 3"]]] = deque()
         self._evidence: Float[np.ndarray, "2 legs 3"] | None = None
-        self._compared: list[Float[np.ndarray, "2 legs 3"]] = []
-        self._time, self._found = 0.0, np.array(np.nan)
+        self._compared: list[tuple[Float[np.ndarray, "legs 3"], Float[np.ndarray, "legs 3"]]] = []
+        self._time, self._since, self._found = 0.0, 0.0, np.array(np.nan)
 
     def step(
         self,
@@ -96,18 +98,27 @@ class JointMonitor:
             commands.popleft()
         if measured is None:
             return
+        self._since += dt
+        if self._since < (1 - _ROUNDING) * _PERIOD:
+            return
+        dt, self._since = self._since, 0.0
         before, found = self._found, _array(measured)
         self._found = found
         stuck = self._stuck(found, commanded, dt)
-        with np.errstate(invalid="ignore"):
-            off = np.abs(found - commanded) > _ERROR
-        if not (off.any() or stuck is not None) and self._evidence is None:
-            return
+        # No joint is further from all recent commands than from the last one.
+        off = np.fmax.reduce(np.abs(found - commanded), axis=None)
         if self._evidence is None:
+            if not off > _ERROR and stuck is None:
+                return
             self._evidence = np.zeros((2, *commanded.shape))
-        recent = [angles for _, angles in commands]
-        over = found - np.max(recent, axis=0)
-        error = np.fmax(np.fmax(over, np.min(recent, axis=0) - found), 0.0)
+        self._evidence *= 0.5 ** (dt / _MEMORY)
+        if not off > _IDLE_ERROR and stuck is None:
+            return
+        recent = np.array([angles for _, angles in commands])
+        over = found - recent.max(axis=0)
+        error = np.fmax(np.fmax(over, recent.min(axis=0) - found), 0.0)
+        if not (error > _IDLE_ERROR).any() and stuck is None:
+            return
         torque = np.full_like(error, np.nan) if torques is None else np.abs(_array(torques)) / self._stall_torque
         moves = (found - before) * np.sign(commanded - found) > _MOVES * dt
         idle = (torque < _IDLE) & ~moves
@@ -119,7 +130,7 @@ class JointMonitor:
         share = np.where(~idle & touches[:, None], _STALLED, 1.0)
         weight = np.where(error > bound, share * np.fmin((error / bound) ** 2, most), 0.0)
         once = np.zeros_like(commanded) if stuck is None else _ONCE * stuck
-        self._evidence = self._evidence * 0.5 ** (dt / _MEMORY) + np.stack([dt * weight, once])
+        self._evidence += np.stack([dt * weight, once])
         for _, leg, joint in np.argwhere(self._evidence > _FAILED_AFTER).tolist():
             self.failed.setdefault(leg, joint)
 
@@ -127,7 +138,7 @@ class JointMonitor:
         self, found: Float[np.ndarray, "legs 3"], commanded: Float[np.ndarray, "legs 3"], dt: float
     ) -> Bool[np.ndarray, "legs 3"] | None:
         """Return which joints have not moved with their commands, at the end of a time in which any is so."""
-        self._compared.append(np.stack([found, commanded]))
+        self._compared.append((found, commanded))
         self._time += dt
         if self._time < _WITHIN:
             return None
