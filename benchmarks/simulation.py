@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from measure import Row
-from tarsus import Command, RobotController, load_robot
+from tarsus import Command, RobotController, WalkController, load_robot
 from tarsus.simulation import SimulatedPlant
 from tarsus.simulation.engine import mujoco_module
 from tarsus.simulation.environment import EPISODE_STEPS, WalkVectorEnv
@@ -21,6 +21,9 @@ TICKS, ROUNDS = 300, 5
 STEPS, MANY = 1000, 64
 MOST, MOST_ADDED = 1000 / 15, 0.4
 """Targets: processor time for a second of one robot [ms], and what the plant adds to MuJoCo's steps."""
+
+FELT_TICKS, FELT_RATIO = 900, 1.3
+"""Number of ticks of a walk in physics, and the greatest ratio of their median with readings to a blind one."""
 
 # What reading the clock twice takes [ns], taken off what is timed.
 _CLOCK = 450
@@ -63,6 +66,34 @@ def _walk(sensors: str) -> tuple[float, float, float]:
     return engine.spent / seconds, around / seconds, spent[1] / seconds
 
 
+def _tick_times(sensors: str) -> list[int]:
+    """Return the times of the robot controller's ticks in a walk [ns]."""
+    robot = load_robot("strider")
+    controller, plant = RobotController(robot), SimulatedPlant(robot, sensors=sensors)
+    twist = (0.5 * WalkController(robot).top_speed((1, 0, 0)), 0.0, 0.0)
+    output, times = controller.output, list[int]()
+    plant.start(output)
+    for _ in range(FELT_TICKS):
+        readings = plant.step(output, 0.01)
+        start = time.thread_time_ns()
+        output = controller.step(twist, 0.01, readings)
+        times.append(time.thread_time_ns() - start - _CLOCK // 2)
+    return times
+
+
+def _felt_tick_row() -> Row:
+    """Compare ticks with all ideal readings with blind ones, by turns."""
+    runs = [[_tick_times(sensors) for sensors in ("blind", "ideal")] for _ in range(ROUNDS)]
+    blind, felt = (np.median(np.min(runs, axis=0), axis=-1) / 1e3).tolist()
+    return Row(
+        what=f"tick of the robot controller in physics, {FELT_TICKS} ticks, all ideal readings: median over a blind one",
+        measured=f"{felt / blind:.2f}",
+        compared=f"{felt:.0f} and {blind:.0f} us",
+        target=f"<= {FELT_RATIO}",
+        met=felt <= FELT_RATIO * blind,
+    )
+
+
 def _steps_a_second(envs: int, actions: str) -> float:
     """Return how many steps environments take in a second, altogether, on all cores; resets are not counted."""
     env = WalkVectorEnv(envs, max_episode_steps=EPISODE_STEPS, actions=actions)
@@ -99,6 +130,7 @@ def _environment_rows() -> Iterator[Row]:
 def simulation_rows() -> Iterator[Row]:
     """Yield the rows."""
     yield from _environment_rows()
+    yield _felt_tick_row()
     for sensors in ("blind", "hobby", "smart"):
         physics, around, controller = np.median([_walk(sensors) for _ in range(ROUNDS)], axis=0).tolist()
         whole = physics + around + controller

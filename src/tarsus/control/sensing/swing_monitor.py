@@ -31,11 +31,11 @@ class SwingMonitor:
         self.lag, self._lag, self._usual, self._commanded = 0.0, _LONGEST_LAG, 0.0, deque[list[float]]()
 
     def step(
-        self, commanded: Sequence[float], measured: Sequence[Vector | None] | None, dt: float, down: Sequence[bool]
+        self, commanded: list[float], measured: Sequence[Vector | None] | None, dt: float, down: Sequence[bool]
     ) -> list[int]:
         """Return the legs in the air that are stopped, by the angles of their coxa joints that were commanded last."""
         commands, stopped = self._commanded, list[int]()
-        commands.appendleft(list(commanded))
+        commands.appendleft(commanded)
         if len(commands) <= _LONGEST_LAG / dt + 2:
             return stopped
         commands.pop()
