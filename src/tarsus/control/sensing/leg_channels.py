@@ -115,12 +115,17 @@ class VectorChannel(_LegChannel):
         super().__init__(name, legs, (len(legs), 3), *([(len(legs),)] if accept_z else []))
         ranges = np.tile(_ANY_FINITE, (len(legs), 1, 1)) if bounds is None else bounds
         self._bounds, self._low, self._high = ranges.tolist(), ranges[..., 0], ranges[..., 1]
-        self._beyond, self._accept_z = beyond, accept_z
+        self._unbounded, self._beyond, self._accept_z = bounds is None, beyond, accept_z
 
     def _plain(self, value: Any, items: Sequence[Any]) -> tuple[Vector, ...] | None:
         if type(value) is not np.ndarray or value.dtype != float or value.ndim != 2:
             return None
-        return tuple(map(tuple, items)) if ((self._low <= value) & (value <= self._high)).all() else None
+        # Of a finite sum all parts are finite.
+        if self._unbounded:
+            plain = math.isfinite(sum(map(sum, items)))
+        else:
+            plain = np.count_nonzero((self._low <= value) & (value <= self._high)) == value.size
+        return tuple(map(tuple, items)) if plain else None
 
     def _read_leg(self, leg: int, value: Any) -> Vector | str:
         alone = as_number(value) if self._accept_z and type(value) is not list else math.nan
