@@ -12,7 +12,10 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 
-__all__ = ["Row", "all_cores", "medians", "peak_bytes", "processor_time", "start_time", "use_one_core"]
+__all__ = ["Row", "all_cores", "felt_row", "medians", "peak_bytes", "processor_time", "start_time", "use_one_core"]
+
+FELT_RATIO = 1.3
+"""Target: the median of ticks with readings over that of blind ones."""
 
 # Mathematics libraries read these variables when they are loaded.
 for _library in ("OMP", "OPENBLAS", "MKL"):
@@ -47,6 +50,29 @@ class Row:
     def verdict(self) -> str:
         """``met``, ``MISSED`` or nothing."""
         return "" if self.met is None else ("met" if self.met else "MISSED")
+
+
+def felt_row(what: str, ticks: Callable[[bool], Sequence[float]], *, runs: int) -> Row:
+    """Compare ticks with readings with blind ones; each counts with its minimum of identical runs, taken by turns.
+
+    Parameters
+    ----------
+    what : str
+        Whose ticks.
+    ticks : callable
+        Returns the processor times of ticks that are blind (False) or have readings (True) [s].
+    runs : int
+        Number of runs.
+    """
+    times = [(ticks(False), ticks(True)) for _ in range(runs)]
+    blind, felt = (statistics.median(map(min, zip(*same, strict=True))) for same in zip(*times, strict=True))
+    return Row(
+        what=f"{what}: median over a blind one",
+        measured=f"{felt / blind:.2f}",
+        compared=f"{felt * 1e6:.0f} and {blind * 1e6:.0f} us",
+        target=f"<= {FELT_RATIO}",
+        met=felt <= FELT_RATIO * blind,
+    )
 
 
 def use_one_core() -> None:

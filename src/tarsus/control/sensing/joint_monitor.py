@@ -16,8 +16,8 @@ if TYPE_CHECKING:
 __all__ = ["JointMonitor"]
 
 _Measured: TypeAlias = "Sequence[Vector | None] | None"
-# How often joints are looked at [s].
-_PERIOD, _ROUNDING = 0.04, 1e-6
+# How often joints are looked at, but for rounding [s].
+_PERIOD = 0.04 * (1 - 1e-6)
 # A joint may lag behind its command for so long [s].
 _LAG = 0.15
 # Error beyond which a servo gives more than its stall torque, if it works [rad]. Hobby servos give it at 0.1 rad.
@@ -99,21 +99,18 @@ class JointMonitor:
         if measured is None:
             return
         self._since += dt
-        if self._since < (1 - _ROUNDING) * _PERIOD:
+        if self._since < _PERIOD:
             return
         dt, self._since = self._since, 0.0
         before, found = self._found, _array(measured)
         self._found = found
         stuck = self._stuck(found, commanded, dt)
-        # No joint is further from all recent commands than from the last one.
-        off = np.fmax.reduce(np.abs(found - commanded), axis=None)
         if self._evidence is None:
-            if not off > _ERROR and stuck is None:
+            # No joint is further from all recent commands than from the last one.
+            if stuck is None and not (np.abs(found - commanded) > _ERROR).any():
                 return
             self._evidence = np.zeros((2, *commanded.shape))
         self._evidence *= 0.5 ** (dt / _MEMORY)
-        if not off > _IDLE_ERROR and stuck is None:
-            return
         recent = np.array([angles for _, angles in commands])
         over = found - recent.max(axis=0)
         error = np.fmax(np.fmax(over, recent.min(axis=0) - found), 0.0)

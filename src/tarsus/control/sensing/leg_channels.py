@@ -120,8 +120,8 @@ class VectorChannel(_LegChannel):
     def _plain(self, value: Any, items: Sequence[Any]) -> tuple[Vector, ...] | None:
         if type(value) is not np.ndarray or value.dtype != float or value.ndim != 2:
             return None
-        # Of a finite sum all parts are finite.
         if self._unbounded:
+            # Of a finite sum all parts are finite.
             plain = math.isfinite(sum(map(sum, items)))
         else:
             plain = np.count_nonzero((self._low <= value) & (value <= self._high)) == value.size
