@@ -68,7 +68,8 @@ class SensorReadings:
     @property
     def has_ground_feedback(self) -> bool:
         """Whether anything that tells of the ground is measured: contacts, attitude, forces or torques."""
-        return any(each is not None for each in (self.contacts, self.attitude, self.forces, self.torques))
+        none = self.contacts is None and self.attitude is None and self.forces is None and self.torques is None
+        return not none
 
 
 CHANNELS = tuple(field.name for field in fields(SensorReadings) if field.name != "age")

@@ -6,6 +6,7 @@ import math
 import sys
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
+from operator import le
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -23,7 +24,7 @@ __all__ = ["ContactChannel", "JointAngleChannel", "VectorChannel"]
 # than its servo without load a joint may be turned.
 _OUTSIDE, _JUMP, _FASTER = 0.5, 0.5, 2.0
 
-_BOOLEAN = {bool}
+_BOOLEAN, _FLOAT = np.dtype(bool), np.dtype(float)
 _NOT_NUMBERS = (math.nan, math.nan, math.nan)
 # Bounds that every finite vector meets.
 _ANY_FINITE = ((-sys.float_info.max, sys.float_info.max),) * 3
@@ -47,19 +48,21 @@ class _LegChannel(Channel, ABC):
         rejected : list of str
             The reasons of rejections are appended to it.
         """
+        if type(value) is np.ndarray and value.shape == self._shapes[0] and self._plausible == self._settled:
+            plain = self._plain(value)
+            if plain is not None:
+                return plain
         items = as_items(value, *self._shapes)
         if items is None:
             rejected.append(self._wrong_shape)
             self.reset()
             return None
-        if self._plausible == self._settled and (plain := self._plain(value, items)) is not None:
-            return plain
         found = [self._accepted(leg, self._read_leg(leg, item), rejected) for leg, item in enumerate(items)]
         return None if found.count(None) == len(found) else tuple(found)
 
     @abstractmethod
-    def _plain(self, value: Any, items: Sequence[Any]) -> tuple[Any, ...] | None:
-        """Return readings that are seen at once to be plausible, as drivers give them; None for others."""
+    def _plain(self, value: np.ndarray) -> tuple[Any, ...] | None:
+        """Return the readings of an array that are seen at once to be plausible; None for others."""
 
     @abstractmethod
     def _read_leg(self, leg: int, value: Any) -> Any:
@@ -78,8 +81,8 @@ class ContactChannel(_LegChannel):
     def __init__(self, legs: Sequence[str]) -> None:
         super().__init__("contacts", legs, (len(legs),))
 
-    def _plain(self, value: Any, items: Sequence[Any]) -> tuple[bool, ...] | None:  # noqa: ARG002 - the items tell
-        return tuple(items) if set(map(type, items)) == _BOOLEAN else None
+    def _plain(self, value: np.ndarray) -> tuple[bool, ...] | None:
+        return tuple(value.tolist()) if value.dtype is _BOOLEAN else None
 
     def _read_leg(self, leg: int, value: Any) -> bool | str:  # noqa: ARG002 - all legs are read alike
         contact = value if type(value) is bool else as_bool(value)
@@ -114,18 +117,22 @@ class VectorChannel(_LegChannel):
     ) -> None:
         super().__init__(name, legs, (len(legs), 3), *([(len(legs),)] if accept_z else []))
         ranges = np.tile(_ANY_FINITE, (len(legs), 1, 1)) if bounds is None else bounds
-        self._bounds, self._low, self._high = ranges.tolist(), ranges[..., 0], ranges[..., 1]
+        self._bounds = ranges.tolist()
+        self._low, self._high = (ranges[..., side].ravel().tolist() for side in (0, 1))
         self._unbounded, self._beyond, self._accept_z = bounds is None, beyond, accept_z
 
-    def _plain(self, value: Any, items: Sequence[Any]) -> tuple[Vector, ...] | None:
-        if type(value) is not np.ndarray or value.dtype != float or value.ndim != 2:
+    def _plain(self, value: np.ndarray) -> tuple[Vector, ...] | None:
+        if value.dtype is not _FLOAT:
             return None
+        numbers: list[float] = value.ravel().tolist()
+        return _in_threes(numbers) if self._contains(numbers) else None
+
+    def _contains(self, numbers: list[float]) -> bool:
+        """Return whether the numbers of all legs are plausible."""
         if self._unbounded:
             # Of a finite sum all parts are finite.
-            plain = math.isfinite(sum(map(sum, items)))
-        else:
-            plain = np.count_nonzero((self._low <= value) & (value <= self._high)) == value.size
-        return tuple(map(tuple, items)) if plain else None
+            return math.isfinite(sum(numbers))
+        return all(map(le, self._low, numbers)) and all(map(le, numbers, self._high))
 
     def _read_leg(self, leg: int, value: Any) -> Vector | str:
         alone = as_number(value) if self._accept_z and type(value) is not list else math.nan
@@ -154,24 +161,28 @@ class JointAngleChannel(VectorChannel):
     def __init__(self, legs: Sequence[str], limits: Float[np.ndarray, "legs 3 2"], speed: float) -> None:
         beyond = f"beyond the joint's limits by more than {math.degrees(_OUTSIDE):.3g} deg"
         super().__init__("joint_angles", legs, bounds=limits + np.array([-_OUTSIDE, _OUTSIDE]), beyond=beyond)
-        # The last plausible angles of each leg, NaN before, and when they were read.
-        self._last, self._read, self._speed = [_NOT_NUMBERS] * len(legs), [0.0] * len(legs), speed
+        # The last plausible angles of all legs, NaN before, and when those of each leg were read.
+        self._last, self._read, self._speed = [*_NOT_NUMBERS] * len(legs), [0.0] * len(legs), speed
 
-    def _plain(self, value: Any, items: Sequence[Any]) -> tuple[Vector, ...] | None:
-        if type(value) is not np.ndarray or value.dtype != float:
-            return None
-        angles = tuple(map(tuple, items))
-        if not math.hypot(*map(math.dist, angles, self._last)) <= _JUMP:
-            return None
-        self._last, self._read = list(angles), [self._now] * len(items)
-        return angles
+    def _contains(self, numbers: list[float]) -> bool:
+        """Return whether the angles of all legs are plausible, which are the last ones then."""
+        plausible = math.dist(numbers, self._last) <= _JUMP and super()._contains(numbers)
+        if plausible:
+            self._last, self._read = numbers, [self._now] * len(self._read)
+        return plausible
 
     def _read_leg(self, leg: int, value: Any) -> Vector | str:
         angles = super()._read_leg(leg, value)
         if isinstance(angles, str):
             return angles
-        most = _JUMP + _FASTER * self._speed * (self._now - self._read[leg])
-        if any(abs(now - before) > most for now, before in zip(angles, self._last[leg], strict=True)):
+        most, of_leg = _JUMP + _FASTER * self._speed * (self._now - self._read[leg]), slice(3 * leg, 3 * leg + 3)
+        if any(abs(now - before) > most for now, before in zip(angles, self._last[of_leg], strict=True)):
             return "change faster than the servos turn"
-        self._last[leg], self._read[leg] = angles, self._now
+        self._last[of_leg], self._read[leg] = angles, self._now
         return angles
+
+
+def _in_threes(numbers: list[float]) -> tuple[Vector, ...]:
+    """Return vectors of three consecutive numbers each."""
+    rest = iter(numbers)
+    return tuple(zip(rest, rest, rest, strict=True))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from operator import attrgetter
 from typing import Any
 
 import numpy as np
@@ -60,6 +61,7 @@ class ReadingsValidator:
             "angular_rates": AngularRateChannel(),
             "ground": _GroundChannel(),
         }
+        self._values = attrgetter(*self._channels)
 
     def validate(self, readings: SensorReadings | None, dt: float) -> ValidReadings:
         """Return the readings that pass, and the reasons of all rejections.
@@ -81,8 +83,7 @@ class ReadingsValidator:
             for channel in self._channels.values():
                 channel.reset()
             return ValidReadings(rejected=(problem,))
-        for name, channel in self._channels.items():
-            value = getattr(readings, name)
+        for (name, channel), value in zip(self._channels.items(), self._values(readings), strict=True):
             if value is None:
                 continue
             if ages and (stale := _stale(name, ages.get(name, 0.0))):
