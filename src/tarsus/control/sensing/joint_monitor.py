@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections import deque
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, TypeAlias
@@ -31,6 +32,8 @@ _MOVES = 1.0
 # servo, and of one that pulls, as that of a leg does that is caught.
 _FAILED_AFTER, _MEMORY = 1.5, 2.0
 _MOST_WEIGHT, _MOST_IDLE, _MOST_PULLING = 6.0, 15.0, 1.0
+# Index of the femur joint.
+_FEMUR = 1
 # Share that counts where the foot touches the ground, which may stall the servo, unless its torque tells that it idles.
 _STALLED = 0.2
 # Where the torque is not measured, a femur that the ground has pushed up by so much [rad], more than nearly any that
@@ -61,12 +64,16 @@ class JointMonitor:
     """
 
     def __init__(self, stall_torque: Float[np.ndarray, "legs 3"] | None = None) -> None:
-        self._stall_torque = np.nan if stall_torque is None else stall_torque
+        self._stall_torque = stall_torque
         self.failed: dict[int, int] = {}
+        # What was commanded, how long each of it was, and all of them.
         self._commands: deque[tuple[float, Float[np.ndarray, "legs 3"]]] = deque()
+        self._span = 0.0
         self._evidence: Float[np.ndarray, "2 legs 3"] | None = None
-        self._compared: list[tuple[Float[np.ndarray, "legs 3"], Float[np.ndarray, "legs 3"]]] = []
-        self._time, self._since, self._found = 0.0, 0.0, np.array(np.nan)
+        # What was measured and commanded, since joints were last looked at for whether they are stuck.
+        self._compared: list[tuple[Sequence[Vector | None], Float[np.ndarray, "legs 3"]]] = []
+        self._time, self._since = 0.0, 0.0
+        self._last: _Measured = None
 
     def step(
         self,
@@ -94,56 +101,93 @@ class JointMonitor:
         """
         commands = self._commands
         commands.append((dt, commanded))
-        if sum(time for time, _ in commands) > _LAG + dt:
-            commands.popleft()
+        self._span += dt
+        if self._span > _LAG + dt:
+            self._span -= commands.popleft()[0]
         if measured is None:
             return
         self._since += dt
         if self._since < _PERIOD:
             return
-        dt, self._since = self._since, 0.0
-        before, found = self._found, _array(measured)
-        self._found = found
-        stuck = self._stuck(found, commanded, dt)
+        since, self._since = self._since, 0.0
+        self._look(measured, commanded, since, torques, contacts)
+        if self._evidence is not None:
+            for _, leg, joint in np.argwhere(self._evidence > _FAILED_AFTER).tolist():
+                self.failed.setdefault(leg, joint)
+
+    def _look(
+        self,
+        measured: Sequence[Vector | None],
+        commanded: Float[np.ndarray, "legs 3"],
+        dt: float,
+        torques: _Measured,
+        contacts: Sequence[bool | None] | None,
+    ) -> None:
+        """Change the evidence against joints by their errors."""
+        last, self._last = self._last or measured, measured
+        stuck = self._stuck(measured, commanded, dt)
+        if self._evidence is not None:
+            self._evidence *= 0.5 ** (dt / _MEMORY)
+        # No joint is further from all recent commands than from the last one.
+        least = _ERROR if self._evidence is None else _IDLE_ERROR
+        if stuck is None and _follow(measured, commanded, least):
+            return
+        before, found = _array(last), _array(measured)
         if self._evidence is None:
-            # No joint is further from all recent commands than from the last one.
-            if stuck is None and not (np.abs(found - commanded) > _ERROR).any():
+            if stuck is None and not np.count_nonzero(np.abs(found - commanded) > least):
                 return
             self._evidence = np.zeros((2, *commanded.shape))
-        self._evidence *= 0.5 ** (dt / _MEMORY)
-        recent = np.array([angles for _, angles in commands])
+        recent = np.array([angles for _, angles in self._commands])
         over = found - recent.max(axis=0)
         error = np.fmax(np.fmax(over, recent.min(axis=0) - found), 0.0)
-        if not (error > _IDLE_ERROR).any() and stuck is None:
-            return
-        torque = np.full_like(error, np.nan) if torques is None else np.abs(_array(torques)) / self._stall_torque
         moves = (found - before) * np.sign(commanded - found) > _MOVES * dt
-        idle = (torque < _IDLE) & ~moves
-        bound = np.where(idle, _IDLE_ERROR, _ERROR)
-        most = np.select([idle, torque >= 0], [_MOST_IDLE, _MOST_PULLING], _MOST_WEIGHT)
-        unknown = np.isnan(torque)
-        most[(over[:, 1] > _GIVES_WAY) & unknown[:, 1], 1] = _MOST_GIVING_WAY
-        touches = np.array([bool(on) for on in contacts or [False] * len(error)])
-        share = np.where(~idle & touches[:, None], _STALLED, 1.0)
-        weight = np.where(error > bound, share * np.fmin((error / bound) ** 2, most), 0.0)
-        once = np.zeros_like(commanded) if stuck is None else _ONCE * stuck
-        self._evidence += np.stack([dt * weight, once])
-        for _, leg, joint in np.argwhere(self._evidence > _FAILED_AFTER).tolist():
-            self.failed.setdefault(leg, joint)
+        for leg, joint in np.argwhere(error > _IDLE_ERROR).tolist():
+            torque = self._torque(torques, leg, joint)
+            idle = torque < _IDLE and not moves[leg, joint]
+            gives_way = joint == _FEMUR and bool(over[leg, joint] > _GIVES_WAY)
+            stalled = not idle and contacts is not None and bool(contacts[leg])
+            weight = _weight(float(error[leg, joint]), torque, idle=idle, gives_way=gives_way)
+            self._evidence[0, leg, joint] += dt * weight * (_STALLED if stalled else 1.0)
+        if stuck is not None:
+            self._evidence[1] += _ONCE * stuck
+
+    def _torque(self, torques: _Measured, leg: int, joint: int) -> float:
+        """Return the measured torque of a joint over the stall torque of its servo; NaN where it is unknown."""
+        of_leg = None if torques is None else torques[leg]
+        if of_leg is None or self._stall_torque is None:
+            return math.nan
+        return abs(of_leg[joint]) / float(self._stall_torque[leg, joint])
 
     def _stuck(
-        self, found: Float[np.ndarray, "legs 3"], commanded: Float[np.ndarray, "legs 3"], dt: float
+        self, measured: Sequence[Vector | None], commanded: Float[np.ndarray, "legs 3"], dt: float
     ) -> Bool[np.ndarray, "legs 3"] | None:
         """Return which joints have not moved with their commands, at the end of a time in which any is so."""
-        self._compared.append((found, commanded))
+        self._compared.append((measured, commanded))
         self._time += dt
         if self._time < _WITHIN:
             return None
-        moved, wanted = np.ptp(self._compared, axis=0)
+        moved = np.ptp([_array(angles) for angles, _ in self._compared], axis=0)
+        wanted = np.ptp([angles for _, angles in self._compared], axis=0)
         self._compared, self._time = [], 0.0
         with np.errstate(invalid="ignore"):
             stuck: np.ndarray = (wanted > _COMMANDED) & (moved < _SHARE * wanted)
         return stuck if stuck.any() else None
+
+
+def _weight(error: float, torque: float, *, idle: bool, gives_way: bool) -> float:
+    """Return for how much an error counts; the torque is relative to the stall torque, NaN where it is unknown."""
+    bound = _IDLE_ERROR if idle else _ERROR
+    if error <= bound:
+        return 0.0
+    unmeasured = _MOST_GIVING_WAY if gives_way else _MOST_WEIGHT
+    most = _MOST_IDLE if idle else _MOST_PULLING if torque >= 0.0 else unmeasured
+    return min((error / bound) ** 2, most)
+
+
+def _follow(measured: Sequence[Vector | None], commanded: Float[np.ndarray, "legs 3"], least: float) -> bool:
+    """Return whether the angles of each leg are, together, off by this much at most."""
+    legs = zip(measured, commanded.tolist(), strict=True)
+    return all(found is None or math.dist(found, angles) <= least for found, angles in legs)
 
 
 def _array(values: Sequence[Vector | None]) -> Float[np.ndarray, "legs 3"]:
