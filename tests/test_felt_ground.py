@@ -811,3 +811,23 @@ def test_while_contacts_are_as_planned_they_are_looked_at_now_and_then_and_a_cha
     assert all(ticks == count for ticks, count in looks)
     assert sum(ticks for ticks, _ in looks) > 190
     assert len(looks) < 120
+
+
+def test_a_foot_that_has_just_lifted_off_may_touch_the_ground_still_and_not_again():
+    contacts, down = FootContacts(6), [False] + [True] * 5
+    phases, touching = np.zeros(6), [True] * 6
+    for _ in range(3):
+        contacts.step(touching, [True] * 6, 0.04)
+    assert contacts.as_planned(touching, [True] * 6, phases)
+    phases[0] = 0.1
+    assert contacts.as_planned(touching, down, phases)
+    assert contacts.as_planned(down, down, phases)
+    # Another foot has lost its contact, and the contact has not ceased by the time at which it has to.
+    assert not contacts.as_planned([False, False, *touching[2:]], down, phases)
+    assert not contacts.as_planned(touching, down, phases + 0.3)
+    contacts.step(down, down, 0.04)
+    assert contacts.lifted[0]
+    assert contacts.as_planned(down, down, phases)
+    # A foot that has left the ground meets an obstacle.
+    assert not contacts.as_planned(touching, down, phases)
+    assert not contacts.as_planned(None, down, phases)

@@ -43,7 +43,7 @@ class LostTime:
         rate = self._rate(twist) if request.state.felt and square else None
         if rate is None:
             self._lost = 0.0
-        else:
+        elif self._lost or rate < 1.0:
             gained = max(_dot(request.state.twist.value.tolist(), twist) / square - 1, 0.0) * rate
             self._lost = min(max(self._lost + request.dt * (1 - rate - gained), 0.0), _MEMORY)
         share = round(_STEPS * min(self._lost / _WHOLE, 1.0)) / _STEPS

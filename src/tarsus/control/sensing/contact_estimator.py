@@ -37,13 +37,13 @@ class ContactEstimator:
         Whether the contact is measured.
     error : float
         Estimated fraction of wrong readings.
-    certain : bool
-        Whether more readings like the last ones change no estimate.
+    certain : list of bool
+        Whether more readings of a foot like the last ones change no estimate.
     """
 
     def __init__(self, legs: int) -> None:
         self.touching, self.known = [True] * legs, [False] * legs
-        self.error, self.certain = _ERROR, False
+        self.error, self.certain = _ERROR, [False] * legs
         self._odds = [_BOUND] * legs
         self._ages = [math.inf] * legs
         self._last: list[tuple[bool, bool]] = [(True, True)] * legs
@@ -80,5 +80,5 @@ class ContactEstimator:
             self._last[leg] = (last, reading)
         if self._read > _MEMORY:
             self._wrong, self._read = self._wrong / 2, self._read / 2
-        self.certain = all(abs(odds) >= _BOUND for odds in self._odds)
+        self.certain = [abs(odds) >= _BOUND for odds in self._odds]
         self.error = min(self._wrong / self._read, _GREATEST_ERROR)

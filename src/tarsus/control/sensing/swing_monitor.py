@@ -41,18 +41,20 @@ class SwingMonitor:
         commands.pop()
         ticks, share = divmod(self._lag / dt, 1.0)
         newer, older = commands[int(ticks)], commands[int(ticks) + 1]
+        lag, usual = self._lag, self._usual
         for leg, angles in enumerate(measured or ()):
             if angles is None or down[leg]:
                 continue
-            step = older[leg] - newer[leg]
-            behind, speed = newer[leg] + share * step - angles[0], -step / dt
+            angle, step = angles[0], older[leg] - newer[leg]
+            behind, speed = newer[leg] + share * step - angle, -step / dt
             # Within the lag, a leg may have turned around.
-            still = (commanded[leg] - angles[0]) * speed > 0.0
-            if still and behind * speed > (_BEHIND + _TIMES * self._usual) * abs(speed):
+            still = (commanded[leg] - angle) * speed > 0.0
+            if still and behind * speed > (_BEHIND + _TIMES * usual) * abs(speed):
                 stopped.append(leg)
             else:
-                self._usual += _MEAN_RATE * (abs(behind) - self._usual)
-                change = _RATE * behind * speed / (speed**2 + _SLOW)
-                self._lag = min(max(self._lag + change, 0.0), _LONGEST_LAG)
-                self.lag += _LAG_RATE * (self._lag - self.lag)
+                usual += _MEAN_RATE * (abs(behind) - usual)
+                lag += _RATE * behind * speed / (speed * speed + _SLOW)
+                lag = min(max(lag, 0.0), _LONGEST_LAG)
+                self.lag += _LAG_RATE * (lag - self.lag)
+        self._lag, self._usual = lag, usual
         return stopped

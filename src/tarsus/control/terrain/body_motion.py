@@ -36,6 +36,8 @@ __all__ = ["BodyMotion"]
 _PERIOD = 0.04 - PHASE_TOLERANCE
 # An attitude that has not been measured for longer is not turned towards any more, and then unknown [s].
 _HOLDS, _TIMEOUT = 0.15, 2.0
+# Change of the tilt by which the body is turned anew between two looks [rad].
+_TURNED = math.radians(0.1)
 # How much lower the next footholds may be than the ground that is felt, over the roughness.
 _LOWER = 0.5
 
@@ -124,8 +126,10 @@ class BodyMotion:
             The gait state.
         """
         if attitude is not None and self._moves is not None and _PERIOD / 2 <= self.since < _PERIOD:
+            before = self.tilt or (math.inf, math.inf)
             self.see(attitude, state, 0.0)
-            self._turn(*self._moves)
+            if math.dist(before, self.tilt or before) > _TURNED:
+                self._turn(*self._moves)
             self._moves = None
 
     def _turn(self, velocity: complex, feet: list[tuple[complex, float]], stands: bool, pace: float) -> None:

@@ -132,7 +132,7 @@ class FeltGround:
         self.body.since, self._unread, self._ticks = self.body.since + dt, self._unread + dt, self._ticks + 1
         self.body.level(valid.attitude, state)
         kept = self._inputs is not None and not (stopped or self.body.looks)
-        if kept and self.contacts.as_planned(measured, down):
+        if kept and self.contacts.as_planned(measured, down, state.swing_phase):
             return state, []
         dt, ticks, self._unread, self._ticks, self._inputs = self._unread, self._ticks, 0.0, 0, None
         self.body.see(valid.attitude, state, dt)
@@ -178,7 +178,9 @@ class FeltGround:
         self._still = not any(twist.tolist()) or (self.body.slope.refuses and self.support.halts)
         self._given, self._rests = (excluded, standing), self._still and not self.missing.refuses
         if kept is not None and not (due and any(due)) and self._given == before:
-            return kept._replace(climb=self.body.rates.climb, turn=self.body.rates.turn)
+            if (kept.climb, kept.turn) != self.body.rates:
+                kept = self._inputs = kept._replace(climb=self.body.rates.climb, turn=self.body.rates.turn)
+            return kept
         dt, self._idle, turn = self._idle, 0.0, cmath.exp(-1j * state.yaw)
         steps = [leg not in excluded for leg in range(len(state.foot))]
         down = [on and step for on, step in zip(state.down.tolist(), steps, strict=True)]

@@ -4,10 +4,15 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
 
 from tarsus.control.sensing.contact_estimator import ContactEstimator
 from tarsus.control.terrain.support import holds
+
+if TYPE_CHECKING:
+    from jaxtyping import Float
 
 __all__ = ["FootContacts", "Search", "sunk_at"]
 
@@ -32,6 +37,8 @@ _UNHELD, _TIPS = 0.15, 0.012
 _NEVER = 0.3
 # Fewer feet bear no robot, unless something else holds it.
 _FEWEST = 2
+# Swing phase up to which contact that has not ceased since lift-off tells nothing.
+_RISING = 0.3
 
 
 class Search(NamedTuple):
@@ -209,10 +216,29 @@ class FootContacts:
             return None
         return max(sinks, key=self.sunk.__getitem__)
 
-    def as_planned(self, readings: Sequence[bool | None] | None, down: Sequence[bool]) -> bool:
-        """Return whether the feet touch the ground that should, and no others, and that is certain."""
-        certain = self.estimator.certain and self.estimator.touching == down
-        return certain and readings is not None and list(readings) == down
+    def as_planned(
+        self, readings: Sequence[bool | None] | None, down: Sequence[bool], phases: Float[np.ndarray, "legs"]
+    ) -> bool:
+        """Return whether the feet touch the ground that should, and no others, and that is certain.
+
+        Parameters
+        ----------
+        readings : sequence of (bool or None), or None
+            Which feet touch the ground, as measured; None where nothing is.
+        down : sequence of bool
+            Which feet should stand.
+        phases : array, shape (legs,)
+            Swing phases of the others: those that have just lifted off may touch the ground still, or not any more.
+        """
+        known = self.estimator
+        if readings is None or (list(readings) == down == known.touching and all(known.certain)):
+            return readings is not None
+        feet = zip(readings, down, known.touching, known.certain, phases.tolist(), self.lifted, strict=True)
+        return all(
+            (certain and reading is on is touches)
+            or not (on or phase > _RISING or reading is None or (reading and lifted))
+            for reading, on, touches, certain, phase, lifted in feet
+        )
 
     def is_open(self, leg: int) -> bool:
         """Return whether a contact is missing that other feet tell of: that of a switch that stays open."""

@@ -30,9 +30,12 @@ def twist_limiters(walk: WalkComponents) -> list[TwistLimiter]:
     def rate(twist: Sequence[float]) -> float | None:
         if ground.condition.carried:
             return None
+        pace = ground.support.pace * walk.time_scaling.rate * (not ground.missing.refuses)
+        if not ground.missing.back:
+            return pace
         velocity = complex(*twist[:2])
         backs = (ground.missing.back * velocity.conjugate()).real / max(abs(velocity) ** 2, 1e-6)
-        return min(backs, 0.0) + ground.support.pace * walk.time_scaling.rate * (not ground.missing.refuses)
+        return min(backs, 0.0) + pace
 
     return [
         LostTime(roughness.adaptation.catch_up, rate),

@@ -75,6 +75,7 @@ def moved_vertically(state: GaitState, inputs: StepInputs, dt: float) -> GaitSta
     places, heights, feet, stop = state.foot.tolist(), state.ground_height.tolist(), list(state.felt), _STOPPING * dt
     delays, phases, starts = state.lift_delay.tolist(), state.swing_phase.tolist(), state.start_height.tolist()
     step, legs = _STANDING_ACCELERATION * dt, zip(state.down.tolist(), felt.steps, felt.stands, felt.under, strict=True)
+    steps_back = False
     for leg, (down, steps, stands, under) in enumerate(legs):
         foot, height = feet[leg], heights[leg]
         if not steps:
@@ -83,12 +84,13 @@ def moved_vertically(state: GaitState, inputs: StepInputs, dt: float) -> GaitSta
             # On the ground it moves by its turn about the body, its drift and its slide.
             before, _, top, _, slide, _ = foot
             place = places[leg]
-            wanted = -((place - origin) * across).real
+            arm = place - origin
+            wanted = -(arm * across).real
             if felt.in_air:
                 wanted = min(max((state.elevation - height) / _SEARCH_TIME, -_SEARCHING), _SEARCHING)
             if stands:
-                place += (turning * (height - body) - drift - yaw_rate * (place - origin)) * dt
-                speed = before + min(max(wanted - before, -step), step)
+                place += (turning * (height - body) - drift - yaw_rate * arm) * dt
+                speed = _towards(before, wanted, step)
                 heights[leg], top = height + (before + speed) / 2 * dt, math.nan
             else:
                 assert under is not None  # known of each foot that has lost its contact
@@ -104,11 +106,12 @@ def moved_vertically(state: GaitState, inputs: StepInputs, dt: float) -> GaitSta
             swing_time = (swing - delays[leg]) / inputs.frequency if inputs.frequency else math.inf
             now = (phases[leg], swing_time, starts[leg], places[leg])
             heights[leg], feet[leg] = _swinging(height, foot, under, felt, dt, now)
-    steps_back = [under is not None and under.place is not None for under in felt.under]
+        steps_back = steps_back or (under is not None and under.place is not None)
     moved: dict[str, Any] = {"origin": origin + felt.back * heading * dt, "climb": climb}
     moved["elevation"] = state.elevation + (state.climb + climb) / 2 * dt
-    if any(steps_back):
-        moved["foothold"] = np.where(steps_back, places, state.foothold)
+    if steps_back:
+        backs = [under is not None and under.place is not None for under in felt.under]
+        moved["foothold"] = np.where(backs, places, state.foothold)
     return state._replace(foot=np.array(places), ground_height=np.array(heights), felt=feet, **moved)
 
 
@@ -168,7 +171,9 @@ def _swinging(
         height, speed, acceleration = quintic((height, speed, acceleration), top, whole, time / whole)
         return height, FeltFoot(speed, acceleration, top, top_phase, slide, drawn_back)
     descent = (top - under.expected + felt.depth) / (part * swing_time) * felt.pace
-    fastest = min(max(felt.scale * _LOWERING, descent), felt.lowering, _fastest_contact(height - under.expected, felt))
+    fastest = min(max(felt.scale * _LOWERING, descent), felt.lowering)
+    if felt.late > 0.0:
+        fastest = min(fastest, _fastest_contact(height - under.expected, felt))
     after = _towards(speed, -fastest, _FOOT_ACCELERATION * dt)
     # Over higher ground on its way it stays.
     lowest = under.lowest
@@ -193,4 +198,7 @@ def _no_lower(height: float, speed: float, before: float, lowest: float) -> tupl
 
 def _towards(value: float, target: float, step: float) -> float:
     """Return a value moved towards a target by a step at most."""
-    return value + min(max(target - value, -step), step)
+    change = target - value
+    if -step <= change <= step:
+        return target
+    return value + (step if change > 0.0 else -step)
