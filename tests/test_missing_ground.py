@@ -605,7 +605,7 @@ def test_feet_of_a_body_that_is_far_off_its_attitude_do_not_step_back():
 
 def test_a_robot_whose_foot_slides_off_an_edge_as_others_lift_off_puts_them_down():
     robot = tarsus.load_robot("makeyourpet")
-    walk = Walk(terrain.Gaps(start=0.308, width=0.2, depth=0.15, count=1), robot=robot)
+    walk = Walk(terrain.Gaps(start=0.3075, width=0.2, depth=0.15, count=1), robot=robot)
     walk.go(0.0546, 2.6)
     assert walk.tilt < np.radians(15)
 
