@@ -237,6 +237,17 @@ def test_joint_angles_that_no_joint_can_have_are_rejected_until_they_settle(make
 
 
 @pytest.mark.parametrize("make", [np.array, np.ndarray.tolist])
+def test_joint_angles_that_leave_their_limits_little_by_little_are_rejected_too(make):
+    validator, angles = ReadingsValidator(STRIDER), STANDING.copy()
+    most = float(np.asarray(STRIDER.limits)[2, 1, 1]) + 0.5
+    for angle in np.arange(STANDING[2, 1], most + 0.2, 0.02):
+        angles[2, 1] = angle
+        found = validated(validator, joint_angles=make(angles)).rejected
+        assert bool(found) is bool(angle > most)
+    assert found == (f"joint_angles of {LEGS[2]}: beyond the joint's limits by more than 28.6 deg",)
+
+
+@pytest.mark.parametrize("make", [np.array, np.ndarray.tolist])
 def test_joints_may_move_as_fast_as_a_leg_is_turned_and_as_far_as_time_has_passed(make):
     validator, fastest = ReadingsValidator(STRIDER), 2.0 * joint_limits(STRIDER).speed.max()
     validated(validator, joint_angles=make(STANDING))
