@@ -19,8 +19,6 @@ __all__ = ["DeflectionCompensation"]
 # How fast the compensation follows the load, and how fast the softness is learnt [1/s]: a foot that lands hard must not
 # be pressed down further.
 _LOAD_RATE, _LEARNING_RATE = 30.0, 2.0
-# How often the softness is learnt [s], and the load of a foot below which it bears none [N].
-_PERIOD, _NO_LOAD = 0.04 * (1 - 1e-6), 0.05
 # Sum of squares of the femurs' deflections from which on they tell the softness [rad^2].
 _LEAST = 1e-5
 # Share of the deflection that is added: measured forces rise with it.
@@ -55,7 +53,7 @@ class DeflectionCompensation:
 
     def __init__(self, robot: Robot) -> None:
         self.offsets: Float[np.ndarray, "legs 3"] | None = None
-        self.lowered = self.softness = self._share = self._needed = self._unlearnt = 0.0
+        self.lowered = self.softness = self._share = self._needed = 0.0
         self._loads, self._legs = [0.0] * robot.legs, list[tuple[float, ...]]()
         if all(all(leg) for leg in robot.servos):
             yields, g = (1 / JointSprings.of(robot).stiffness[:, 1:]).T, robot.geometry
@@ -86,39 +84,25 @@ class DeflectionCompensation:
         wanted = _SHARE if self._needed + slope >= _FRICTION else 0.0
         self._share += min(_LEARNING_RATE * dt, 1.0) * (wanted - self._share)
         forces, measured = valid.forces or unknown, valid.joint_angles or unknown
-        follows, lowered, share = min(_LOAD_RATE * dt, 1.0), 0.0, self._share * self.softness
-        offsets, bends = list[tuple[float, float, float]](), list[tuple[float, float]]()
-        self._unlearnt += dt
-        learns = self._unlearnt >= _PERIOD
+        follows, product, square, lowered = min(_LOAD_RATE * dt, 1.0), 0.0, 0.0, 0.0
+        offsets, share = list[tuple[float, float, float]](), self._share * self.softness
         for leg, (yaw, length, tibia, femur_yields, tibia_yields) in enumerate(self._legs):
-            force, angles = forces[leg], measured[leg]
-            newest = max(force[2], 0.0) if force and angles else 0.0
-            load = self._loads[leg] = self._loads[leg] + follows * (newest - self._loads[leg])
-            if load < _NO_LOAD and newest < _NO_LOAD:
-                offsets.append((0.0, 0.0, 0.0))
-                continue
-            coxa, femur, bend = commanded[leg].tolist()
-            to_knee, _, to_hip, below_hip = _lever_arms(length, tibia, femur, bend)
+            force, angles, (coxa, femur, bend) = forces[leg], measured[leg], commanded[leg].tolist()
+            self._loads[leg] += follows * ((max(force[2], 0.0) if force and angles else 0.0) - self._loads[leg])
+            load, (to_knee, _, to_hip, below_hip) = self._loads[leg], _lever_arms(length, tibia, femur, bend)
             turned, bent = femur_yields * to_hip * load, tibia_yields * to_knee * load
-            if learns and force and angles:
+            if force and angles:
                 # The torque that bends the femur is that of the whole force: feet lean against each other.
                 out = force[0] * math.cos(yaw + coxa) + force[1] * math.sin(yaw + coxa)
-                bends.append((femur_yields * (to_hip * force[2] + below_hip * out), angles[1] - femur))
+                bends = femur_yields * (to_hip * force[2] + below_hip * out)
+                product, square = product + bends * (angles[1] - femur), square + bends * bends
             lowered = max(lowered, share * (turned * to_hip + bent * to_knee))
             offsets.append((0.0, -share * turned, -share * bent))
-        if learns:
-            self._learn(bends)
+        if square > _LEAST:
+            learnt = self.softness + min(_LEARNING_RATE * dt, 1.0) * (product / square - self.softness)
+            self.softness = min(max(learnt, 0.0), 1.0)
         self.lowered += min(_LEARNING_RATE * dt, 1.0) * (lowered - self.lowered)
         self.offsets = np.array(offsets)
-
-    def _learn(self, bends: list[tuple[float, float]]) -> None:
-        """Learn the softness from femurs' deflections, those of the robot's servos and the measured ones [rad]."""
-        time, self._unlearnt = self._unlearnt, 0.0
-        square = sum(bend * bend for bend, _ in bends)
-        if square > _LEAST:
-            found = sum(bend * turned for bend, turned in bends) / square
-            learnt = self.softness + min(_LEARNING_RATE * time, 1.0) * (found - self.softness)
-            self.softness = min(max(learnt, 0.0), 1.0)
 
     def _needed_friction(self, commanded: Float[np.ndarray, "legs 3"]) -> float:
         """Return which friction keeps all feet in place under vertical loads: horizontal over vertical force."""
