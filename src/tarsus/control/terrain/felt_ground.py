@@ -178,9 +178,8 @@ class FeltGround:
         self._still = not any(twist.tolist()) or (self.body.slope.refuses and self.support.halts)
         self._given, self._rests = (excluded, standing), self._still and not self.missing.refuses
         if kept is not None and not (due and any(due)) and self._given == before:
-            if (kept.climb, kept.turn) != self.body.rates:
-                kept = self._inputs = kept._replace(climb=self.body.rates.climb, turn=self.body.rates.turn)
-            return kept
+            self._inputs = kept._replace(climb=self.body.rates.climb, turn=self.body.rates.turn)
+            return self._inputs
         dt, self._idle, turn = self._idle, 0.0, cmath.exp(-1j * state.yaw)
         steps = [leg not in excluded for leg in range(len(state.foot))]
         down = [on and step for on, step in zip(state.down.tolist(), steps, strict=True)]
