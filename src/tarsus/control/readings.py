@@ -68,8 +68,7 @@ class SensorReadings:
     @property
     def has_ground_feedback(self) -> bool:
         """Whether anything that tells of the ground is measured: contacts, attitude, forces or torques."""
-        none = self.contacts is None and self.attitude is None and self.forces is None and self.torques is None
-        return not none
+        return not (self.contacts is None and self.attitude is None and self.forces is None and self.torques is None)
 
 
 CHANNELS = tuple(field.name for field in fields(SensorReadings) if field.name != "age")

@@ -66,7 +66,7 @@ class JointMonitor:
     def __init__(self, stall_torque: Float[np.ndarray, "legs 3"] | None = None) -> None:
         self._stall_torque = stall_torque
         self.failed: dict[int, int] = {}
-        # What was commanded, how long each of it was, and all of them.
+        # Durations and commands of the last ticks, and the sum of the durations [s].
         self._commands: deque[tuple[float, Float[np.ndarray, "legs 3"]]] = deque()
         self._span = 0.0
         self._evidence: Float[np.ndarray, "2 legs 3"] | None = None
@@ -129,14 +129,12 @@ class JointMonitor:
         if self._evidence is not None:
             self._evidence *= 0.5 ** (dt / _MEMORY)
         # No joint is further from all recent commands than from the last one.
-        least = _ERROR if self._evidence is None else _IDLE_ERROR
-        if stuck is None and _follow(measured, commanded, least):
+        most = _ERROR if self._evidence is None else _IDLE_ERROR
+        if stuck is None and _follow(measured, commanded, most):
             return
-        before, found = _array(last), _array(measured)
         if self._evidence is None:
-            if stuck is None and not np.count_nonzero(np.abs(found - commanded) > least):
-                return
             self._evidence = np.zeros((2, *commanded.shape))
+        before, found = _array(last), _array(measured)
         recent = np.array([angles for _, angles in self._commands])
         over = found - recent.max(axis=0)
         error = np.fmax(np.fmax(over, recent.min(axis=0) - found), 0.0)
@@ -184,10 +182,10 @@ def _weight(error: float, torque: float, *, idle: bool, gives_way: bool) -> floa
     return min((error / bound) ** 2, most)
 
 
-def _follow(measured: Sequence[Vector | None], commanded: Float[np.ndarray, "legs 3"], least: float) -> bool:
-    """Return whether the angles of each leg are, together, off by this much at most."""
-    legs = zip(measured, commanded.tolist(), strict=True)
-    return all(found is None or math.dist(found, angles) <= least for found, angles in legs)
+def _follow(measured: Sequence[Vector | None], commanded: Float[np.ndarray, "legs 3"], most: float) -> bool:
+    """Return whether no joint that is measured is off by more than this."""
+    legs = ((found, angles) for found, angles in zip(measured, commanded.tolist(), strict=True) if found is not None)
+    return all(abs(now - wanted) <= most for found, angles in legs for now, wanted in zip(found, angles, strict=True))
 
 
 def _array(values: Sequence[Vector | None]) -> Float[np.ndarray, "legs 3"]:

@@ -78,8 +78,6 @@ def as_vector(value: Any) -> tuple[float, float, float] | None:
     value : anything
         Expected: a list, tuple or array of three numbers.
     """
-    if type(value) is np.ndarray and value.shape == (3,):
-        value = value.tolist()
     if type(value) is list and len(value) == 3:  # the common case, without a copy
         x, y, z = value
         if type(x) is type(y) is type(z) is float:

@@ -7,7 +7,10 @@ from collections.abc import Sequence
 
 from tarsus.control.readings import Vector
 
-__all__ = ["SwingMonitor"]
+__all__ = ["USUAL_LAG", "SwingMonitor"]
+
+USUAL_LAG = 0.03
+"""Lag of the joints of usual servos behind their commands [s]."""
 
 # Angle by which a joint is behind that is stopped [rad], besides so many times the usual one; how fast that is learnt.
 _BEHIND, _TIMES, _MEAN_RATE = 0.02, 3.0, 0.01

@@ -14,7 +14,7 @@ from tarsus.control.pose.posture_feedback import Levelling
 from tarsus.control.readings import SensorReadings, ValidReadings
 from tarsus.control.sensing.body_condition import BodyCondition
 from tarsus.control.sensing.foot_loads import FootLoads
-from tarsus.control.sensing.swing_monitor import SwingMonitor
+from tarsus.control.sensing.swing_monitor import USUAL_LAG, SwingMonitor
 from tarsus.control.sensing.validation import ReadingsValidator
 from tarsus.control.terrain.body_motion import BodyMotion
 from tarsus.control.terrain.foot_contacts import FootContacts
@@ -40,8 +40,8 @@ __all__ = ["FeltGround"]
 
 # How far below the expected ground feet go by the end of their swing, over the roughness.
 _DEPTH_SHARE = 0.6
-# How soon feet lift off that are not lowered any more; lag of the joints of usual servos: more makes contacts late [s].
-_LEAVING, _USUAL_LAG = 0.1, 0.03
+# How soon feet lift off that are not lowered any more [s].
+_LEAVING = 0.1
 # Speed with which feet look for the ground while others hold a robot that stands [m/s], and how far below the expected
 # ground [m]: faster or lower ones push the body off the others.
 _GENTLE, _NEAR = 0.02, 0.004
@@ -137,8 +137,9 @@ class FeltGround:
         dt, ticks, self._unread, self._ticks, self._inputs = self._unread, self._ticks, 0.0, 0, None
         self.body.see(valid.attitude, state, dt)
         self.ground.see(valid, state)
+        # A greater lag of the joints than usual makes contacts late.
         leaving, rests = timing.due(state, _LEAVING), self._rests and self.support.held
-        estimated, age = self._loads.estimated, max(valid.contact_age, self._swings.lag - _USUAL_LAG)
+        estimated, age = self._loads.estimated, max(valid.contact_age, self._swings.lag - USUAL_LAG)
         self.contacts.step(measured, down, dt, age=age, count=ticks, leaving=leaving, rests=rests, estimated=estimated)
         self.condition.step([*map(self.contacts.touches, range(len(down)))], valid.attitude, dt, held=self.support.held)
         self.offsets = self._loads.offsets(valid, angles, dt, feet=state.foot, stands=down)
@@ -178,8 +179,7 @@ class FeltGround:
         self._still = not any(twist.tolist()) or (self.body.slope.refuses and self.support.halts)
         self._given, self._rests = (excluded, standing), self._still and not self.missing.refuses
         if kept is not None and not (due and any(due)) and self._given == before:
-            self._inputs = kept._replace(climb=self.body.rates.climb, turn=self.body.rates.turn)
-            return self._inputs
+            return kept._replace(climb=self.body.rates.climb, turn=self.body.rates.turn)
         dt, self._idle, turn = self._idle, 0.0, cmath.exp(-1j * state.yaw)
         steps = [leg not in excluded for leg in range(len(state.foot))]
         down = [on and step for on, step in zip(state.down.tolist(), steps, strict=True)]

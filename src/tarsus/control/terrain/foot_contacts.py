@@ -231,8 +231,10 @@ class FootContacts:
             Swing phases of the others: those that have just lifted off may touch the ground still, or not any more.
         """
         known = self.estimator
-        if readings is None or (list(readings) == down == known.touching and all(known.certain)):
-            return readings is not None
+        if readings is None:
+            return False
+        if list(readings) == down == known.touching and all(known.certain):
+            return True
         feet = zip(readings, down, known.touching, known.certain, phases.tolist(), self.lifted, strict=True)
         return all(
             (certain and reading is on is touches)

@@ -6,6 +6,7 @@ import cmath
 import math
 from typing import TYPE_CHECKING, Any
 
+from tarsus.control.sensing.swing_monitor import USUAL_LAG
 from tarsus.control.terrain.body_motion import BodyMotion
 from tarsus.control.terrain.foot_contacts import FootContacts, Search, sunk_at
 from tarsus.control.terrain.ground_map import GroundMap
@@ -26,8 +27,8 @@ __all__ = ["met_ground", "not_sunk", "searching_feet"]
 _CLEAR, _LANDING = 0.12, 0.55
 # Rounding of a height [m].
 _ROUNDING = 1e-9
-# How far a foot has risen that meets an obstacle [m], and how far it lags behind its command [s].
-_LIFTED, _LAG = 0.01, 0.03
+# How far a foot has risen that meets an obstacle [m].
+_LIFTED = 0.01
 # After a collision: how much higher the foot rises [m], in which time [s], and how far it is drawn back [m].
 _HIGHER, _RISING, _DRAWN_BACK = 0.025, 0.12, 0.008
 # Of a foot that collides again: how far it is from its foothold at least, and past its collision at most, where it does
@@ -134,7 +135,7 @@ def _landed(state: GaitState, leg: int, timing: StepTiming, pace: float) -> Gait
 def _collides(state: GaitState, leg: int, contacts: FootContacts) -> bool:
     """Return whether a foot that feels contact in the first half of its swing has met an obstacle."""
     # A contact is that of a moment ago, and the foot lags behind its command: it was lower.
-    then = float(state.ground_height[leg]) - max(state.felt[leg].speed, 0.0) * (contacts.age + _LAG)
+    then = float(state.ground_height[leg]) - max(state.felt[leg].speed, 0.0) * (contacts.age + USUAL_LAG)
     return state.felt[leg].drawn_back is None and then - float(state.start_height[leg]) > _LIFTED
 
 

@@ -75,7 +75,6 @@ def moved_vertically(state: GaitState, inputs: StepInputs, dt: float) -> GaitSta
     places, heights, feet, stop = state.foot.tolist(), state.ground_height.tolist(), list(state.felt), _STOPPING * dt
     delays, phases, starts = state.lift_delay.tolist(), state.swing_phase.tolist(), state.start_height.tolist()
     step, legs = _STANDING_ACCELERATION * dt, zip(state.down.tolist(), felt.steps, felt.stands, felt.under, strict=True)
-    steps_back = False
     for leg, (down, steps, stands, under) in enumerate(legs):
         foot, height = feet[leg], heights[leg]
         if not steps:
@@ -106,12 +105,11 @@ def moved_vertically(state: GaitState, inputs: StepInputs, dt: float) -> GaitSta
             swing_time = (swing - delays[leg]) / inputs.frequency if inputs.frequency else math.inf
             now = (phases[leg], swing_time, starts[leg], places[leg])
             heights[leg], feet[leg] = _swinging(height, foot, under, felt, dt, now)
-        steps_back = steps_back or (under is not None and under.place is not None)
+    steps_back = [under is not None and under.place is not None for under in felt.under]
     moved: dict[str, Any] = {"origin": origin + felt.back * heading * dt, "climb": climb}
     moved["elevation"] = state.elevation + (state.climb + climb) / 2 * dt
-    if steps_back:
-        backs = [under is not None and under.place is not None for under in felt.under]
-        moved["foothold"] = np.where(backs, places, state.foothold)
+    if any(steps_back):
+        moved["foothold"] = np.where(steps_back, places, state.foothold)
     return state._replace(foot=np.array(places), ground_height=np.array(heights), felt=feet, **moved)
 
 
@@ -171,9 +169,7 @@ def _swinging(
         height, speed, acceleration = quintic((height, speed, acceleration), top, whole, time / whole)
         return height, FeltFoot(speed, acceleration, top, top_phase, slide, drawn_back)
     descent = (top - under.expected + felt.depth) / (part * swing_time) * felt.pace
-    fastest = min(max(felt.scale * _LOWERING, descent), felt.lowering)
-    if felt.late > 0.0:
-        fastest = min(fastest, _fastest_contact(height - under.expected, felt))
+    fastest = min(max(felt.scale * _LOWERING, descent), felt.lowering, _fastest_contact(height - under.expected, felt))
     after = _towards(speed, -fastest, _FOOT_ACCELERATION * dt)
     # Over higher ground on its way it stays.
     lowest = under.lowest
