@@ -690,7 +690,8 @@ def test_003_no_solution_where_too_few_legs_reach_the_ground() -> None:
     angles = inverse_kinematics(robot, default_stance(robot, 0.11)).require().angles
     for down in ([2, 5], [0, 1, 2], [3, 4, 5]):
         contacts = np.isin(np.arange(6), down)
-        assert stability_margin(robot, angles, Pose(), contacts) < 0
+        # The centre of mass is on the line between two opposite feet, up to the rounding of the machine.
+        assert stability_margin(robot, angles, Pose(), contacts) < 1e-9
 
 
 def test_003_erratum_the_support_polygon_decides_whether_it_stands() -> None:

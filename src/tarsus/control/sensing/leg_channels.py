@@ -16,7 +16,7 @@ from tarsus.control.sensing.channel import Channel
 from tarsus.control.sensing.plain_values import as_bool, as_items, as_number, as_vector
 
 if TYPE_CHECKING:
-    from jaxtyping import Float
+    from jaxtyping import Float, Shaped
 
 __all__ = ["ContactChannel", "JointAngleChannel", "VectorChannel"]
 
@@ -61,7 +61,7 @@ class _LegChannel(Channel, ABC):
         return None if found.count(None) == len(found) else tuple(found)
 
     @abstractmethod
-    def _plain(self, value: np.ndarray) -> tuple[Any, ...] | None:
+    def _plain(self, value: Shaped[np.ndarray, "..."]) -> tuple[Any, ...] | None:
         """Return the readings of an array that are seen at once to be plausible; None for others."""
 
     @abstractmethod
@@ -81,7 +81,7 @@ class ContactChannel(_LegChannel):
     def __init__(self, legs: Sequence[str]) -> None:
         super().__init__("contacts", legs, (len(legs),))
 
-    def _plain(self, value: np.ndarray) -> tuple[bool, ...] | None:
+    def _plain(self, value: Shaped[np.ndarray, "legs"]) -> tuple[bool, ...] | None:
         return tuple(value.tolist()) if value.dtype is _BOOLEAN else None
 
     def _read_leg(self, leg: int, value: Any) -> bool | str:  # noqa: ARG002 - all legs are read alike
@@ -121,7 +121,7 @@ class VectorChannel(_LegChannel):
         self._low, self._high = (ranges[..., side].ravel().tolist() for side in (0, 1))
         self._unbounded, self._beyond, self._accept_z = bounds is None, beyond, accept_z
 
-    def _plain(self, value: np.ndarray) -> tuple[Vector, ...] | None:
+    def _plain(self, value: Shaped[np.ndarray, "..."]) -> tuple[Vector, ...] | None:
         if value.dtype is not _FLOAT:
             return None
         numbers: list[float] = value.ravel().tolist()
