@@ -476,6 +476,14 @@ def test_an_array_is_accepted_as_lists_of_its_numbers_are(numbers):
         assert found == as_lists.validate(SensorReadings(**given[1]), 0.01)
 
 
+@pytest.mark.parametrize("dtype", [int, np.float32])
+def test_an_array_of_other_numbers_is_accepted_as_one_of_floats(dtype):
+    numbers = np.arange(18).reshape(6, 3)
+    valid = validated(joint_speeds=numbers.astype(dtype))
+    assert valid == validated(joint_speeds=numbers.astype(float))
+    assert all(type(number) is float for vector in valid.joint_speeds for number in vector)
+
+
 def test_an_array_whose_sum_is_not_finite_is_accepted_with_finite_numbers():
     greatest = np.full((6, 3), 1e308)
     valid = ReadingsValidator(STRIDER).validate(SensorReadings(joint_speeds=greatest), 0.01)

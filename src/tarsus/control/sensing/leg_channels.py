@@ -6,7 +6,7 @@ import math
 import sys
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
-from operator import le
+from operator import le, sub
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -125,7 +125,10 @@ class VectorChannel(_LegChannel):
         if value.dtype is not _FLOAT:
             return None
         numbers: list[float] = value.ravel().tolist()
-        return _in_threes(numbers) if self._contains(numbers) else None
+        if not self._contains(numbers):
+            return None
+        rest = iter(numbers)
+        return tuple(zip(rest, rest, rest, strict=False))
 
     def _contains(self, numbers: list[float]) -> bool:
         """Return whether the numbers of all legs are plausible."""
@@ -161,15 +164,23 @@ class JointAngleChannel(VectorChannel):
     def __init__(self, legs: Sequence[str], limits: Float[np.ndarray, "legs 3 2"], speed: float) -> None:
         beyond = f"beyond the joint's limits by more than {math.degrees(_OUTSIDE):.3g} deg"
         super().__init__("joint_angles", legs, bounds=limits + np.array([-_OUTSIDE, _OUTSIDE]), beyond=beyond)
-        # The last plausible angles of all legs, NaN before, and when those of each leg were read.
+        # The last plausible angles of all legs, NaN before, and when those of each leg were read; by how much they may
+        # change until they are compared with their bounds again.
         self._last, self._read, self._speed = [*_NOT_NUMBERS] * len(legs), [0.0] * len(legs), speed
+        self._room = -1.0
 
     def _contains(self, numbers: list[float]) -> bool:
         """Return whether the angles of all legs are plausible, which are the last ones then."""
-        plausible = math.dist(numbers, self._last) <= _JUMP and super()._contains(numbers)
-        if plausible:
-            self._last, self._read = numbers, [self._now] * len(self._read)
-        return plausible
+        change = math.dist(numbers, self._last)
+        if not change <= _JUMP:
+            return False
+        self._room -= change
+        if self._room < 0.0:
+            self._room = min(*map(sub, numbers, self._low), *map(sub, self._high, numbers))
+            if self._room < 0.0:
+                return False
+        self._last, self._read = numbers, [self._now] * len(self._read)
+        return True
 
     def _read_leg(self, leg: int, value: Any) -> Vector | str:
         angles = super()._read_leg(leg, value)
@@ -178,11 +189,5 @@ class JointAngleChannel(VectorChannel):
         most, of_leg = _JUMP + _FASTER * self._speed * (self._now - self._read[leg]), slice(3 * leg, 3 * leg + 3)
         if any(abs(now - before) > most for now, before in zip(angles, self._last[of_leg], strict=True)):
             return "change faster than the servos turn"
-        self._last[of_leg], self._read[leg] = angles, self._now
+        self._last[of_leg], self._read[leg], self._room = angles, self._now, -1.0
         return angles
-
-
-def _in_threes(numbers: list[float]) -> tuple[Vector, ...]:
-    """Return vectors of three consecutive numbers each."""
-    rest = iter(numbers)
-    return tuple(zip(rest, rest, rest, strict=True))

@@ -37,7 +37,8 @@ class SwingMonitor:
         self, commanded: list[float], measured: Sequence[Vector | None] | None, dt: float, down: Sequence[bool]
     ) -> list[int]:
         """Return the legs in the air that are stopped, by the angles of their coxa joints that were commanded last."""
-        commands, stopped = self._commanded, list[int]()
+        commands = self._commanded
+        stopped: list[int] = []
         commands.appendleft(commanded)
         if len(commands) <= _LONGEST_LAG / dt + 2:
             return stopped

@@ -77,7 +77,8 @@ class ReadingsValidator:
         self._channels["joint_angles"].elapse(dt)
         if readings is None:
             return _NO_READINGS
-        rejected, accepted = list[str](), dict[str, Any]()
+        rejected: list[str] = []
+        accepted: dict[str, Any] = {}
         problem, ages = _channel_ages(readings)
         if problem:
             for channel in self._channels.values():

@@ -27,7 +27,7 @@ from tarsus.control.transition.foothold_transfer import FootholdTransfer
 from tarsus.control.walk.felt_feet import FeltFoot, FeltInputs, GroundUnder, travel_share
 from tarsus.control.walk.ground_pose import body_posture
 from tarsus.control.walk.state import GaitState
-from tarsus.control.walk.step_timing import StepTiming
+from tarsus.control.walk.step_timing import NextLift, StepTiming
 from tarsus.gait.foot_plane import FootPlane
 from tarsus.gait.stance.stance_geometry import SWING_HEIGHT
 from tarsus.kinematics.mass import centre_of_mass
@@ -96,7 +96,8 @@ class FeltGround:
         self._centre = complex(*centre_of_mass(robot, angles)[:2].tolist())
         # What feet are given while all is as planned; ticks and times since contacts and support were looked at.
         self._inputs: FeltInputs | None = None
-        self._given, self._rests, self._ticks, self._unread, self._idle = (list[int](), True), True, 0, 0.0, 0.0
+        self._given: tuple[object, ...] = ()
+        self._rests, self._ticks, self._unread, self._idle, self._next_lift = True, 0, 0.0, 0.0, NextLift()
 
     def sense(
         self,
@@ -145,8 +146,8 @@ class FeltGround:
         self.offsets = self._loads.offsets(valid, angles, dt, feet=state.foot, stands=down)
         if self.missing.stranded and all(down):
             state = timing.with_first_lift(state, self.missing.stranded[0])
-        known, in_air = (self.contacts, self.ground, self.body, self.missing), self.condition.in_air
-        return met_ground(state, *known, stopped=stopped, timing=timing, pace=self.support.pace, in_air=in_air)
+        known, pace = (self.contacts, self.ground, self.body, self.missing), self.support.pace
+        return met_ground(state, *known, stopped=stopped, timing=timing, pace=pace, in_air=self.condition.in_air)
 
     def inputs(
         self,
@@ -174,13 +175,13 @@ class FeltGround:
         standing : bool
             Whether the robot stands.
         """
-        due = None if standing else timing.due(state, dt)
         kept, before, self._idle = self._inputs, self._given, self._idle + dt
         self._still = not any(twist.tolist()) or (self.body.slope.refuses and self.support.halts)
         self._given, self._rests = (excluded, standing), self._still and not self.missing.refuses
-        if kept is not None and not (due and any(due)) and self._given == before:
+        if kept and self._given == before and (standing or not self._next_lift.is_due(timing, state, dt)):
             return kept._replace(climb=self.body.rates.climb, turn=self.body.rates.turn)
-        dt, self._idle, turn = self._idle, 0.0, cmath.exp(-1j * state.yaw)
+        due, turn = None if standing else timing.due(state, dt), cmath.exp(-1j * state.yaw)
+        dt, self._idle = self._idle, 0.0
         steps = [leg not in excluded for leg in range(len(state.foot))]
         down = [on and step for on, step in zip(state.down.tolist(), steps, strict=True)]
         places = [(foot - state.origin) * turn for foot in state.foot.tolist()]
@@ -193,15 +194,14 @@ class FeltGround:
         stands = self._find_missing_ground(state, places, down, centre, footholds, dt)
         self._decide_on_support(places, down, due, centre, dt=dt, swing_time=timing.swing_time)
         self.body.roughness.decay(0.0 if standing else dt * timing.frequency)
-        lifts = due or [False] * len(down)
         under: list[GroundUnder | None] = [None] * len(down)
         for leg, place in enumerate(places):
-            if steps[leg] and (lifts[leg] or not (down[leg] and stands[leg])):
+            if steps[leg] and not (down[leg] and stands[leg] and not (due and due[leg])):
                 under[leg] = self._under(state, leg, place, down=down[leg])
         far = self.body.reach.stroke / max(*footholds.placement_radii, 1e-6)
         travel = travel_share(far, self.contacts.age / timing.swing_time)
         inputs = self._feet_inputs(state, (under, stands, steps), travel)
-        # As long as all is as planned, it stays: yielding feet and a walk that slows down are looked at in each tick.
+        # It stays while all is as planned; yielding feet and a walk that slows down are looked at in each tick.
         self._inputs = None if self._loads.compliant or self.support.pace < 1.0 else inputs
         return inputs
 
@@ -242,15 +242,14 @@ class FeltGround:
     ) -> list[bool]:
         """Decide where feet step that find no ground; return which stand, or would, with the robot in the air."""
         contacts, missing, rest = self.contacts, self.missing, footholds.rest.tolist()
-        deeper = self.body.roughness.deeper
         feet, tips = (places, down, contacts.standing), bool(missing.tips or missing.places)
-        near = not_sunk(state, self.ground, *feet, reach=self.body.reach, deeper=deeper, tips=tips)
+        near = not_sunk(state, self.ground, *feet, reach=self.body.reach, deeper=self.body.roughness.deeper, tips=tips)
         contacts.find_open(near, places, centre, self.measured.attitude, dt)
         missing.twist = state.twist.value.tolist()
         if self.condition.carried:
             missing.forget()
             self.ground.plane = FootPlane()
-        held = [self.condition.in_air or on for on in contacts.standing]
+        held, deeper = [self.condition.in_air or on for on in contacts.standing], self.body.roughness.deeper
         stands = [on and not missing.steps_back(leg, places[leg]) for leg, on in enumerate(held)]
         missing.sees(self.ground.holes, rest)
         waits = self.condition.carried or (self._rests and self.support.held and near == down)

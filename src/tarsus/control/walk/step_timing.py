@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from operator import is_not
 from typing import NamedTuple
 
 import numpy as np
@@ -11,7 +12,7 @@ from tarsus.control.walk.state import PHASE_TOLERANCE, GaitState
 from tarsus.control.workspace.body_shift import NO_SHIFT
 from tarsus.gait.gait import Gait
 
-__all__ = ["StepTiming"]
+__all__ = ["NextLift", "StepTiming"]
 
 
 # The twist follows its target within about one stance: faster, and standing feet would be left behind.
@@ -90,9 +91,20 @@ class StepTiming(NamedTuple):
         state, dt : GaitState, float
             The gait state; the time [s].
         """
-        clock = state.clock + self.frequency * dt + PHASE_TOLERANCE - self.gait.duty_factor
+        clock = state.clock + self.frequency * dt
+        return [clock > lift for lift in self.lift_clocks(state)]
+
+    def lift_clocks(self, state: GaitState) -> list[float]:
+        """Return the clocks after which feet on the ground are due to lift off; infinity for those in the air.
+
+        Parameters
+        ----------
+        state : GaitState
+            The gait state.
+        """
+        lifts = self.gait.duty_factor - PHASE_TOLERANCE
         steps = zip(state.down.tolist(), self.gait.offsets, state.step_number.tolist(), strict=True)
-        return [down and clock > offset + number for down, offset, number in steps]
+        return [offset + number + lifts if down else math.inf for down, offset, number in steps]
 
     def with_first_lift(self, state: GaitState, leg: int) -> GaitState:
         """Return the gait state with the clock at the lift-off of a leg; while the body is shifted, the clock stays.
@@ -121,3 +133,26 @@ class StepTiming(NamedTuple):
         step = dt * now * now / 2
         reached = abs(frequency - now) <= step
         return self._replace(frequency=frequency if reached else now + math.copysign(step, frequency - now))
+
+
+class NextLift:
+    """When the next foot is due to lift off: looked up anew where gait or steps have changed."""
+
+    def __init__(self) -> None:
+        self._steps: tuple[object, ...] = ()
+        self._clock = math.inf
+
+    def is_due(self, timing: StepTiming, state: GaitState, dt: float) -> bool:
+        """Return whether any foot on the ground is due to lift off within a time.
+
+        Parameters
+        ----------
+        timing, state : StepTiming, GaitState
+            The gait and its frequency; the gait state.
+        dt : float
+            The time [s].
+        """
+        steps = timing.gait, state.down, state.step_number
+        if not self._steps or any(map(is_not, steps, self._steps)):
+            self._steps, self._clock = steps, min(timing.lift_clocks(state))
+        return state.clock + timing.frequency * dt > self._clock

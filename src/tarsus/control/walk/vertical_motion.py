@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import cmath
 import math
-from typing import Any
 
 import numpy as np
 
@@ -105,12 +104,20 @@ def moved_vertically(state: GaitState, inputs: StepInputs, dt: float) -> GaitSta
             swing_time = (swing - delays[leg]) / inputs.frequency if inputs.frequency else math.inf
             now = (phases[leg], swing_time, starts[leg], places[leg])
             heights[leg], feet[leg] = _swinging(height, foot, under, felt, dt, now)
-    steps_back = [under is not None and under.place is not None for under in felt.under]
-    moved: dict[str, Any] = {"origin": origin + felt.back * heading * dt, "climb": climb}
-    moved["elevation"] = state.elevation + (state.climb + climb) / 2 * dt
-    if any(steps_back):
-        moved["foothold"] = np.where(steps_back, places, state.foothold)
-    return state._replace(foot=np.array(places), ground_height=np.array(heights), felt=feet, **moved)
+    steps_back = [leg for leg, under in enumerate(felt.under) if under is not None and under.place is not None]
+    foothold = state.foothold
+    if steps_back:
+        foothold = foothold.copy()
+        foothold[steps_back] = [places[leg] for leg in steps_back]
+    return state._replace(
+        foot=np.array(places),
+        ground_height=np.array(heights),
+        felt=feet,
+        foothold=foothold,
+        origin=origin + felt.back * heading * dt,
+        elevation=state.elevation + (state.climb + climb) / 2 * dt,
+        climb=climb,
+    )
 
 
 def _searching(
