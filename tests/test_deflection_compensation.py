@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 import tarsus
+from tarsus.control.pose import deflection_compensation
 from tarsus.control.pose.deflection_compensation import _SHARE as SHARE
 from tarsus.control.pose.deflection_compensation import DeflectionCompensation
 from tarsus.control.readings import ValidReadings
@@ -14,7 +15,8 @@ from tarsus.simulation.sensors.suite import FootSwitch
 
 ROBOT = tarsus.load_robot("phantomx")
 ANGLES = np.array(tarsus.WalkController(ROBOT).angles)
-LOADS = np.array([6.0, 0.0, 9.0, 1.0, 4.0, 12.0])
+# Three feet: equilibrium alone determines what they bear.
+LOADS = np.array([6.0, 0.0, 9.0, 0.0, 12.0, 0.0])
 # What vertical forces turn the joints: an independent reference.
 _FORCES = np.c_[np.zeros((6, 2)), LOADS]
 _TORQUES = np.einsum("lij,li->lj", np.asarray(tarsus.leg_jacobian(ROBOT, ANGLES)), _FORCES)
@@ -54,6 +56,46 @@ def test_softness_is_learnt_by_the_whole_force_on_feet_that_lean_against_each_ot
     assert found.softness == pytest.approx(softness, abs=1e-6)
     # What is added is that of the vertical forces: it takes the feet's lean away.
     np.testing.assert_allclose(found.offsets, -SHARE * softness * DEFLECTION, atol=1e-6)
+
+
+def turned_by(loads):
+    forces = np.c_[np.zeros((6, 2)), loads]
+    torques = np.einsum("lij,li->lj", np.asarray(tarsus.leg_jacobian(ROBOT, ANGLES)), forces)
+    return torques / tarsus.JointSprings.of(ROBOT).stiffness
+
+
+def test_forces_with_which_feet_only_press_against_each_other_add_nothing(monkeypatch):
+    monkeypatch.setattr(deflection_compensation, "_BEARS", 0.01)
+    feet = np.array(tarsus.forward_kinematics(ROBOT, ANGLES))[:, 3, :2]
+    loads = np.array([5.0, 6.0, 4.0, 5.0, 7.0, 6.0])
+    equilibrium = np.vstack([np.ones(6), feet.T])
+    internal = np.linalg.svd(equilibrium)[2][3:]  # without a sum or a moment
+    np.testing.assert_allclose(equilibrium @ internal.T, 0.0, atol=1e-12)
+    expected = -SHARE * 0.6 * turned_by(loads - internal.T @ (internal @ loads))
+    for pressed in (loads, loads + 1.5 * internal[0], loads - internal[1] + 2 * internal[2]):
+        measured = tuple(map(tuple, (ANGLES + 0.6 * turned_by(pressed)).tolist()))
+        valid = readings(0.0, np.c_[np.zeros((6, 2)), pressed])._replace(joint_angles=measured)
+        np.testing.assert_allclose(stepped(valid).offsets, expected, atol=1e-6)
+
+
+@pytest.mark.parametrize("servos", ["ideal", "catalogue"])
+def test_in_physics_the_feet_of_a_wave_walk_slide_little(servos):
+    """Feet that had lost contact searched at once and lifted the others off; loaded ones were pressed further down."""
+    wave = tarsus.Gait.named("wave")
+    plant = SimulatedPlant(ROBOT, sensors="ideal", servos=servos)
+    controller = tarsus.RobotController(ROBOT, wave)
+    speed = 0.5 * tarsus.WalkController(ROBOT, wave).top_speed((1, 0, 0))
+    output, slip, start = controller.output, 0.0, 0.0
+    plant.start(output)
+    for tick in range(1000):
+        output = controller.step((speed, 0.0, 0.0), 0.01, plant.step(output, 0.01))
+        if tick >= 400:
+            start = start or plant.state.body.position[0]
+            slip += plant.state.slip_speeds.mean() * 0.01
+    way = plant.state.body.position[0] - start
+    assert way == pytest.approx(speed * 6.0, rel=0.03)
+    assert slip < 0.05 * way  # about 0.1 before
+    assert abs(np.degrees(plant.state.body.rpy[:2])).max() < 0.6
 
 
 def test_softness_is_within_its_bounds():

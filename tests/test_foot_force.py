@@ -85,6 +85,18 @@ def test_balanced_forces_equal_those_of_statics(seed, count):
     assert not np.array(found)[~contacts].any()
 
 
+def test_feet_that_bear_load_in_part_bear_less():
+    rng = np.random.default_rng(5)
+    feet, parts = rng.uniform(-0.2, 0.2, (6, 2)), np.array([1.0, 0.3, 1.0, 0.0, 0.8, 1.0])
+    feet -= np.average(feet, axis=0, weights=parts)
+    found = np.array(balanced_forces(feet.tolist(), parts.tolist(), (0.02, -0.01), 30.0))
+    # The least sum of squares over parts, by the pseudo-inverse.
+    equilibrium, root = np.vstack([np.ones(6), feet.T]), np.sqrt(parts)
+    expected = root * (np.linalg.pinv(equilibrium * root) @ [30.0, 0.6, -0.3])
+    assert expected.min() >= 0.0
+    np.testing.assert_allclose(found, expected, atol=1e-9)
+
+
 def test_balanced_forces_without_equilibrium():
     line = [[0.1, 0.0, 0.0], [-0.1, 0.0, 0.0], [0.3, 0.0, 0.0]]
     assert balanced_forces(line, [False] * 3, (0.0, 0.0), 30.0) == (0.0, 0.0, 0.0)

@@ -116,19 +116,20 @@ def _weight_moment(weight: float, r: float, z: float, up_r: float, up_z: float) 
 
 
 def balanced_forces(
-    feet: Sequence[Sequence[float]], contacts: Sequence[bool], centre: Sequence[float], weight: float
+    feet: Sequence[Sequence[float]], contacts: Sequence[float], centre: Sequence[float], weight: float
 ) -> tuple[float, ...]:
     """Return the vertical forces with which the feet carry a weight, with the least sum of squares.
 
     Equilibrium does not determine them for more than three feet. The least-squares solution is linear in position:
-    ``f = weight / n + a (x - x_mean) + b (y - y_mean)``, a and b from the moments about the mean.
+    ``f = weight / n + a (x - x_mean) + b (y - y_mean)``, a and b from the moments about the mean. Where feet bear
+    load in part, each square counts divided by its part, and the force is multiplied by it.
 
     Parameters
     ----------
     feet : sequence of (x, y, ...)
         Feet on the ground plane [m].
-    contacts : sequence of bool
-        Feet that bear load.
+    contacts : sequence of bool or float
+        Feet that bear load, or how far each does, 0 to 1.
     centre : (x, y)
         Projection of the centre of mass, in the same frame [m].
     weight : float
@@ -140,21 +141,18 @@ def balanced_forces(
         Upward forces of the ground [N]; 0 for feet in the air, and never negative: the moments are not balanced where
         the centre is outside the support polygon or the feet are collinear.
     """
-    down = [foot for foot, touch in zip(feet, contacts, strict=True) if touch]
-    if not down:
+    count = sum(contacts)
+    if not count:
         return (0.0,) * len(feet)
-    count = len(down)
-    mean_x, mean_y = sum(f[0] for f in down) / count, sum(f[1] for f in down) / count
+    down = [(foot[0], foot[1], part) for foot, part in zip(feet, contacts, strict=True)]
+    mean_x, mean_y = sum(part * x for x, _, part in down) / count, sum(part * y for _, y, part in down) / count
     moments = PlanarMoments(
-        xx=sum((f[0] - mean_x) ** 2 for f in down),
-        xy=sum((f[0] - mean_x) * (f[1] - mean_y) for f in down),
-        yy=sum((f[1] - mean_y) ** 2 for f in down),
+        xx=sum(part * (x - mean_x) ** 2 for x, _, part in down),
+        xy=sum(part * (x - mean_x) * (y - mean_y) for x, y, part in down),
+        yy=sum(part * (y - mean_y) ** 2 for _, y, part in down),
     )
     off_x, off_y = weight * (centre[0] - mean_x), weight * (centre[1] - mean_y)
     a = b = 0.0
     if moments.span_area(_LEAST_SPREAD):
         a, b = moments.slopes(off_x, off_y, determinant=moments.determinant)
-    return tuple(
-        max(weight / count + a * (foot[0] - mean_x) + b * (foot[1] - mean_y), 0.0) if touch else 0.0
-        for foot, touch in zip(feet, contacts, strict=True)
-    )
+    return tuple(max(part * (weight / count + a * (x - mean_x) + b * (y - mean_y)), 0.0) for x, y, part in down)

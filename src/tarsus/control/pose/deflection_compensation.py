@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from tarsus.control.readings import ValidReadings
+from tarsus.control.readings import ValidReadings, Vector
 from tarsus.load.compliant.joint_springs import JointSprings
+from tarsus.load.foot_force import balanced_forces
 from tarsus.robot.robot import Robot
 
 if TYPE_CHECKING:
@@ -23,6 +25,8 @@ _LOAD_RATE, _LEARNING_RATE = 30.0, 2.0
 _LEAST = 1e-5
 # Share of the deflection that is added: measured forces rise with it.
 _SHARE = 0.5
+# Share of all load from which on a foot bears load in full.
+_BEARS = 0.2
 # Friction that holds the feet of loaded legs where it needs no more.
 _FRICTION = 0.8
 
@@ -31,7 +35,9 @@ class DeflectionCompensation:
     """Adds to the commands of femur and tibia what vertical forces on the feet turn them.
 
     Legs that yield give way outwards: feet that take over load slide, or press against each other through friction.
-    With the deflection for a vertical force in the commands, little horizontal force is left. The stiffness is that of
+    With the deflection for a vertical force in the commands, little horizontal force is left. Of the measured forces
+    only what equilibrium asks for counts: more than three feet press against each other, too, and would do so more and
+    more as the foot that bears most is pressed further down. The stiffness is that of
     the robot's servos over their softness, which is learnt from the measured angles of the femurs: it is 0 for servos
     that do not yield. Nothing is added where forces or joint angles are not measured or servos unknown, nor where
     friction holds the feet on the slope under them: compensated legs are stiffer, and lose contact on rough ground.
@@ -57,7 +63,7 @@ class DeflectionCompensation:
         self._loads, self._legs = [0.0] * robot.legs, list[tuple[float, ...]]()
         if all(all(leg) for leg in robot.servos):
             yields, g = (1 / JointSprings.of(robot).stiffness[:, 1:]).T, robot.geometry
-            columns = (robot.mount_yaw, g.femur, g.tibia, *yields)
+            columns = (*robot.mount_position.T[:2], robot.mount_yaw, g.coxa, g.femur, g.tibia, *yields)
             self._legs = list(zip(*(column.tolist() for column in columns), strict=True))
 
     def step(self, valid: ValidReadings, commanded: Float[np.ndarray, "legs 3"], dt: float, *, slope: float) -> None:
@@ -84,12 +90,14 @@ class DeflectionCompensation:
         wanted = _SHARE if self._needed + slope >= _FRICTION else 0.0
         self._share += min(_LEARNING_RATE * dt, 1.0) * (wanted - self._share)
         forces, measured = valid.forces or unknown, valid.joint_angles or unknown
-        follows, product, square, lowered = min(_LOAD_RATE * dt, 1.0), 0.0, 0.0, 0.0
-        offsets, share = list[tuple[float, float, float]](), self._share * self.softness
-        for leg, (yaw, length, tibia, femur_yields, tibia_yields) in enumerate(self._legs):
-            force, angles, (coxa, femur, bend) = forces[leg], measured[leg], commanded[leg].tolist()
-            self._loads[leg] += follows * ((max(force[2], 0.0) if force and angles else 0.0) - self._loads[leg])
-            load, (to_knee, _, to_hip, below_hip) = self._loads[leg], _lever_arms(length, tibia, femur, bend)
+        product, square, lowered, share = 0.0, 0.0, 0.0, self._share * self.softness
+        offsets: list[tuple[float, float, float]] = []
+        joints = commanded.tolist()
+        known = [force if angles else None for force, angles in zip(forces, measured, strict=True)]
+        loads = self._balanced_loads(known, joints, dt)
+        for leg, (*_, yaw, _, length, tibia, femur_yields, tibia_yields) in enumerate(self._legs):
+            force, angles, load, (coxa, femur, bend) = known[leg], measured[leg], loads[leg], joints[leg]
+            to_knee, _, to_hip, below_hip = _lever_arms(length, tibia, femur, bend)
             turned, bent = femur_yields * to_hip * load, tibia_yields * to_knee * load
             if force and angles:
                 # The torque that bends the femur is that of the whole force: feet lean against each other.
@@ -104,11 +112,29 @@ class DeflectionCompensation:
         self.lowered += min(_LEARNING_RATE * dt, 1.0) * (lowered - self.lowered)
         self.offsets = np.array(offsets)
 
+    def _balanced_loads(
+        self, forces: Sequence[Vector | None], joints: list[list[float]], dt: float
+    ) -> tuple[float, ...]:
+        """Return the loads of the feet, as far as equilibrium asks for them; they follow the measured forces."""
+        follows, feet = min(_LOAD_RATE * dt, 1.0), list[tuple[float, float]]()
+        for leg, (force, (coxa, femur, bend)) in enumerate(zip(forces, joints, strict=True)):
+            x, y, yaw, out, length, tibia, *_ = self._legs[leg]
+            out += _lever_arms(length, tibia, femur, bend)[2]
+            feet.append((x + out * math.cos(yaw + coxa), y + out * math.sin(yaw + coxa)))
+            self._loads[leg] += follows * ((max(force[2], 0.0) if force else 0.0) - self._loads[leg])
+        total = sum(self._loads)
+        if not total:
+            return (0.0,) * len(feet)
+        bear = [min(load / (_BEARS * total), 1.0) for load in self._loads]
+        loaded = list(zip(self._loads, feet, strict=True))
+        centre = [sum(load * foot[axis] for load, foot in loaded) / total for axis in (0, 1)]
+        return balanced_forces(feet, bear, centre, total)
+
     def _needed_friction(self, commanded: Float[np.ndarray, "legs 3"]) -> float:
         """Return which friction keeps all feet in place under vertical loads: horizontal over vertical force."""
         needed = 0.0
         legs = zip(self._legs, commanded.tolist(), strict=True)
-        for (_, length, tibia, femur_yields, tibia_yields), (_, femur, bend) in legs:
+        for (*_, length, tibia, femur_yields, tibia_yields), (_, femur, bend) in legs:
             to_knee, below_knee, to_hip, below_hip = _lever_arms(length, tibia, femur, bend)
             outward = femur_yields * to_hip * below_hip + tibia_yields * to_knee * below_knee
             needed = max(needed, outward / max(femur_yields * below_hip**2 + tibia_yields * below_knee**2, 1e-12))

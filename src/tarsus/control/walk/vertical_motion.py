@@ -34,9 +34,9 @@ _BEHIND = 0.5
 _CLEAR = 0.9
 # Least speed of a descending foot, and of a foot that should stand and feels nothing [m/s].
 _LOWERING, _SEARCHING = 0.12, 0.15
-# Such a speed of a foot that has stood, while this many others stand, and how far below the expected ground it is then
-# [m/s], [m]: a faster one would push the others off.
-_LOSING, _OTHERS, _NEAR = 0.04, 3, 0.004
+# Such a speed of a foot that has stood, while this many others stand [m/s]: a faster one would push the others off,
+# which then search in turn.
+_LOSING, _OTHERS = 0.02, 3
 # Time in which a foot that should stand goes down to the expected ground [s].
 _SEARCH_TIME = 0.1
 # From how high over the expected ground on a foot whose contact is known late goes down more slowly, and how far it
@@ -130,9 +130,8 @@ def _searching(
         place = place if under.place is None else under.place
         least = felt.scale * _SEARCHING
         fastest = felt.lowering if under.place is None else max(felt.lowering, least)
-        loses = math.isnan(foot.top) and over < -felt.scale * _NEAR and sum(felt.stands) >= _OTHERS
-        rough = min(felt.depth / _ROUGH, 1.0)
-        slowest = felt.scale * (_LOSING + rough * (_SEARCHING - _LOSING)) if loses else least
+        loses = math.isnan(foot.top) and sum(felt.stands) >= _OTHERS
+        slowest = felt.scale * _LOSING if loses else least
         wanted -= min(max(slowest, over / _SEARCH_TIME), fastest, _fastest_contact(over, felt))
         after = _towards(speed, wanted, _FOOT_ACCELERATION * dt)
         height, after = _no_lower(height + (speed + after) / 2 * dt, after, height, under.lowest)
