@@ -34,9 +34,9 @@ _BEHIND = 0.5
 _CLEAR = 0.9
 # Least speed of a descending foot, and of a foot that should stand and feels nothing [m/s].
 _LOWERING, _SEARCHING = 0.12, 0.15
-# Such a speed of a foot that has stood, while this many others stand [m/s]: a faster one would push the others off,
-# which then search in turn.
-_LOSING, _OTHERS = 0.02, 3
+# Such a speed of a foot that has stood, while this many others stand and the walk goes on at this rate at least [m/s]:
+# a faster one would push the others off, which then search in turn.
+_LOSING, _OTHERS, _GOES_ON = 0.02, 3, 0.5
 # Time in which a foot that should stand goes down to the expected ground [s].
 _SEARCH_TIME = 0.1
 # From how high over the expected ground on a foot whose contact is known late goes down more slowly, and how far it
@@ -130,7 +130,7 @@ def _searching(
         place = place if under.place is None else under.place
         least = felt.scale * _SEARCHING
         fastest = felt.lowering if under.place is None else max(felt.lowering, least)
-        loses = math.isnan(foot.top) and sum(felt.stands) >= _OTHERS
+        loses = math.isnan(foot.top) and sum(felt.stands) >= _OTHERS and felt.pace > _GOES_ON
         slowest = felt.scale * _LOSING if loses else least
         wanted -= min(max(slowest, over / _SEARCH_TIME), fastest, _fastest_contact(over, felt))
         after = _towards(speed, wanted, _FOOT_ACCELERATION * dt)
