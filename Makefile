@@ -71,6 +71,7 @@ truth: $(VENV)/.dev
 	$(BIN)/python docs/compensation_true.py
 	$(BIN)/python docs/faults.py
 	$(BIN)/python docs/rough_ground.py
+	$(BIN)/python docs/gaits_on_ground.py
 	$(BIN)/python docs/seen_ground.py
 	$(BIN)/python docs/holes.py
 	$(BIN)/python docs/obstacles.py

@@ -69,6 +69,7 @@ class Case(NamedTuple):
     sensors: Any = "ideal"
     servos: str = "catalogue"
     options: dict[str, Any] = {}  # noqa: RUF012 - never changed
+    gait: str = ""  # that of the robot
 
 
 NOT_ADAPTED = {
@@ -92,6 +93,7 @@ CASES: dict[str, Case] = {
     "without adaptation": Case(options=NOT_ADAPTED),
     "without odometry": Case(sensors=switches()),
 }
+GAIT_CASES = {gait: Case(gait=gait) for gait in ("tetrapod", "ripple", "wave")}
 
 
 class Outcome(NamedTuple):
@@ -107,10 +109,11 @@ class Outcome(NamedTuple):
 def walk(job: tuple[str, str, str, int]) -> Outcome:
     """Return the outcome of one walk at half the top speed."""
     name, ground, key, seed = job
-    robot, case = tarsus.load_robot(name), CASES[key]
-    speed = 0.5 * tarsus.WalkController(robot).top_speed((1, 0, 0))
+    robot, case = tarsus.load_robot(name), (CASES | GAIT_CASES)[key]
+    gait = tarsus.Gait.named(case.gait or robot.gait.name)
+    speed = 0.5 * tarsus.WalkController(robot, gait).top_speed((1, 0, 0))
     plant = SimulatedPlant(robot, terrain=GROUNDS[ground](seed), sensors=case.sensors, servos=case.servos, seed=seed)
-    controller = tarsus.RobotController(robot, **case.options)
+    controller = tarsus.RobotController(robot, gait, **case.options)
     output, dt = controller.output, 0.01
     plant.start(output)
     start, tilts, slip, lying, touched, fell = plant.state.body.position[0], [], 0.0, 0.0, False, False
@@ -153,8 +156,8 @@ def table(robot: str, grounds: list[str], cases: list[str], found: dict[tuple[st
     return "\n".join(lines)
 
 
-def tables(asked: argparse.Namespace) -> dict[str, str]:
-    """Measure, and return the tables."""
+def tables(asked: argparse.Namespace, name: str = "rough ground") -> dict[str, str]:
+    """Measure, and return the table of that name."""
     jobs = [
         (robot, ground, case, seed)
         for robot, ground, case in itertools.product(asked.robots, asked.grounds, asked.cases)
@@ -163,7 +166,7 @@ def tables(asked: argparse.Namespace) -> dict[str, str]:
     found: dict[tuple[str, str, str], list[Outcome]] = {}
     for (robot, ground, case, _), outcome in zip(jobs, measured(walk, jobs, asked.jobs), strict=True):
         found.setdefault((robot, ground, case), []).append(outcome)
-    return {"rough ground": "\n\n".join(table(robot, asked.grounds, asked.cases, found) for robot in asked.robots)}
+    return {name: "\n\n".join(table(robot, asked.grounds, asked.cases, found) for robot in asked.robots)}
 
 
 if __name__ == "__main__":

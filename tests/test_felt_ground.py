@@ -462,16 +462,22 @@ def test_feet_step_as_high_when_the_robot_stops_as_while_it_walks(ticks):
 def test_a_foot_that_has_stood_looks_for_the_ground_slowly_while_three_others_stand():
     felt = FeltInputs([], [], [], 0.0, 0.0, (0.0, 0.0), 0j, 0.0, 0j, 0.8, 1.0, 0.03, 0.4, 0.0, {})
     under = GroundUnder(0.0, lowest=-0.2, highest=0.2)
-    # So not while the walk waits for it.
+    # So not on rough ground, where it may be far below, and not close to where it is expected; where more than three
+    # feet always stand, always but where the walk waits for it.
     cases = (
-        (-0.01, math.nan, 3, 1.0, -0.02),
-        (-0.003, math.nan, 4, 0.8, -0.02),
-        (-0.01, math.nan, 2, 1.0, -0.15),
-        (-0.01, 0.03, 3, 1.0, -0.15),
-        (-0.01, math.nan, 3, 0.3, -0.15),
+        (-0.01, math.nan, 3, {}, -0.04),
+        (-0.01, math.nan, 2, {}, -0.15),
+        (-0.01, 0.03, 3, {}, -0.15),
+        (-0.01, math.nan, 3, {"depth": 0.006}, -0.15),
+        (-0.003, math.nan, 3, {}, -0.15),
+        (-0.003, math.nan, 4, {"redundant": True}, -0.02),
+        (-0.01, math.nan, 3, {"redundant": True, "depth": 0.006}, -0.02),
+        (-0.01, math.nan, 2, {"redundant": True}, -0.15),
+        (-0.01, 0.03, 3, {"redundant": True}, -0.15),
+        (-0.003, math.nan, 3, {"redundant": True, "pace": 0.3}, -0.15),
     )
-    for start, top, others, pace, speed in cases:
-        foot, given = FeltFoot(speed, top=top), felt._replace(stands=[True] * others, pace=pace)
+    for start, top, others, changes, speed in cases:
+        foot, given = FeltFoot(speed, top=top), felt._replace(stands=[True] * others, **changes)
         height, _, after = _searching(start, foot, 0j, 0.0, under, given, 0.1)
         assert after == pytest.approx(speed)
         assert height == pytest.approx(start + 0.1 * speed)

@@ -400,9 +400,8 @@ class Walk:
 
 
 def test_a_robot_stops_at_a_wall_says_so_and_walks_away_from_it():
-    walk = Walk(terrain.Step(rise=0.15, start=0.4))
-    # Three tries and a foothold beside take up to five seconds.
-    stopped = walk.go(0.13, 8.0)
+    walk = Walk(terrain.Step(rise=0.15, start=0.41))
+    stopped = walk.go(0.13, 4.5)
     assert stopped < 0.3
     assert walk.named & {"front left", "front right"}
     # It neither pushes nor climbs, and tries other footholds once.

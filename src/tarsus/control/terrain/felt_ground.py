@@ -200,7 +200,7 @@ class FeltGround:
                 under[leg] = self._under(state, leg, place, down=down[leg])
         far = self.body.reach.stroke / max(*footholds.placement_radii, 1e-6)
         travel = travel_share(far, self.contacts.age / timing.swing_time)
-        inputs = self._feet_inputs(state, (under, stands, steps), travel)
+        inputs = self._feet_inputs(state, (under, stands, steps), travel)._replace(redundant=timing.redundant)
         # It stays while all is as planned; yielding feet and a walk that slows down are looked at in each tick.
         self._inputs = None if self._loads.compliant or self.support.pace < 1.0 else inputs
         return inputs

@@ -108,6 +108,8 @@ class FeltInputs(NamedTuple):
         By how much speeds are smaller than given, on short legs, 0 to 1.
     exact : bool
         Whether feet are to keep to their paths, as one of them crosses a hole.
+    redundant : bool
+        Whether more than three feet stand at any time of the gait.
     """
 
     under: list[GroundUnder | None]
@@ -128,6 +130,7 @@ class FeltInputs(NamedTuple):
     in_air: bool = False
     scale: float = 1.0
     exact: bool = False
+    redundant: bool = False
 
 
 def travel_share(far: float, late: float) -> float:

@@ -17,6 +17,8 @@ __all__ = ["NextLift", "StepTiming"]
 
 # The twist follows its target within about one stance: faster, and standing feet would be left behind.
 _TIME_CONSTANTS_PER_STANCE = 4.0
+# Mean number of standing feet above which more than three stand at any time.
+_THREE = 3.9
 
 
 class StepTiming(NamedTuple):
@@ -61,6 +63,11 @@ class StepTiming(NamedTuple):
     def swing_time(self) -> float:
         """Duration of a swing [s]."""
         return (1 - self.gait.duty_factor) / self.frequency
+
+    @property
+    def redundant(self) -> bool:
+        """Whether more than three feet stand at any time."""
+        return len(self.gait.offsets) * self.gait.duty_factor > _THREE
 
     def steps_like(self, gait: Gait) -> bool:
         """Return whether another gait has the same steps and the same kind of body motion.

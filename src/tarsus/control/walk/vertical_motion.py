@@ -34,9 +34,12 @@ _BEHIND = 0.5
 _CLEAR = 0.9
 # Least speed of a descending foot, and of a foot that should stand and feels nothing [m/s].
 _LOWERING, _SEARCHING = 0.12, 0.15
-# Such a speed of a foot that has stood, while this many others stand and the walk goes on at this rate at least [m/s]:
-# a faster one would push the others off, which then search in turn.
-_LOSING, _OTHERS, _GOES_ON = 0.02, 3, 0.5
+# Such a speed of a foot that has stood, while this many others stand, and how far below the expected ground it is then
+# [m/s], [m]: a faster one would push the others off.
+_LOSING, _OTHERS, _NEAR = 0.04, 3, 0.004
+# That speed in gaits in which more than three feet always stand, while the walk goes on at this rate at least [m/s]:
+# feet that are pushed off search in turn.
+_LOSING_ONE_OF_MANY, _GOES_ON = 0.02, 0.5
 # Time in which a foot that should stand goes down to the expected ground [s].
 _SEARCH_TIME = 0.1
 # From how high over the expected ground on a foot whose contact is known late goes down more slowly, and how far it
@@ -130,8 +133,9 @@ def _searching(
         place = place if under.place is None else under.place
         least = felt.scale * _SEARCHING
         fastest = felt.lowering if under.place is None else max(felt.lowering, least)
-        loses = math.isnan(foot.top) and sum(felt.stands) >= _OTHERS and felt.pace > _GOES_ON
-        slowest = felt.scale * _LOSING if loses else least
+        slowest = least
+        if math.isnan(foot.top) and sum(felt.stands) >= _OTHERS:
+            slowest = _losing(over, felt)
         wanted -= min(max(slowest, over / _SEARCH_TIME), fastest, _fastest_contact(over, felt))
         after = _towards(speed, wanted, _FOOT_ACCELERATION * dt)
         height, after = _no_lower(height + (speed + after) / 2 * dt, after, height, under.lowest)
@@ -143,6 +147,14 @@ def _searching(
     if over > _CLEAR * clear:
         place = under.place if abs(way) <= _BACK * dt else place + _BACK * dt * way / abs(way)
     return height + (speed + after) / 2 * dt, place, after
+
+
+def _losing(over: float, felt: FeltInputs) -> float:
+    """Return the least speed down of a foot that has stood, so high over the expected ground, while others stand."""
+    if felt.redundant and felt.pace > _GOES_ON:
+        return felt.scale * _LOSING_ONE_OF_MANY
+    rough = min(felt.depth / _ROUGH, 1.0) if over < -felt.scale * _NEAR else 1.0
+    return felt.scale * (_LOSING + rough * (_SEARCHING - _LOSING))
 
 
 def _swinging(
