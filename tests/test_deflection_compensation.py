@@ -98,6 +98,10 @@ def test_in_physics_the_feet_of_a_wave_walk_slide_little(servos):
     assert abs(np.degrees(plant.state.body.rpy[:2])).max() < 0.6
 
 
+def test_feet_that_bear_nothing_add_nothing():
+    assert not stepped(readings(1.0, np.zeros((6, 3))), ticks=2).offsets.any()
+
+
 def test_softness_is_within_its_bounds():
     assert stepped(readings(3.0)).softness == 1.0
     assert stepped(readings(-1.0)).softness == 0.0
