@@ -144,7 +144,7 @@ def balanced_forces(
     count = sum(contacts)
     if not count:
         return (0.0,) * len(feet)
-    down = [(foot[0], foot[1], part) for foot, part in zip(feet, contacts, strict=True)]
+    down = [(foot[0], foot[1], part) for foot, part in zip(feet, contacts, strict=True) if part]
     mean_x, mean_y = sum(part * x for x, _, part in down) / count, sum(part * y for _, y, part in down) / count
     moments = PlanarMoments(
         xx=sum(part * (x - mean_x) ** 2 for x, _, part in down),
@@ -155,4 +155,7 @@ def balanced_forces(
     a = b = 0.0
     if moments.span_area(_LEAST_SPREAD):
         a, b = moments.slopes(off_x, off_y, determinant=moments.determinant)
-    return tuple(max(part * (weight / count + a * (x - mean_x) + b * (y - mean_y)), 0.0) for x, y, part in down)
+    return tuple(
+        max(part * (weight / count + a * (foot[0] - mean_x) + b * (foot[1] - mean_y)), 0.0) if part else 0.0
+        for foot, part in zip(feet, contacts, strict=True)
+    )

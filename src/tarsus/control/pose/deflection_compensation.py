@@ -94,10 +94,11 @@ class DeflectionCompensation:
         offsets: list[tuple[float, float, float]] = []
         joints = commanded.tolist()
         known = [force if angles else None for force, angles in zip(forces, measured, strict=True)]
-        loads = self._balanced_loads(known, joints, dt)
-        for leg, (*_, yaw, _, length, tibia, femur_yields, tibia_yields) in enumerate(self._legs):
-            force, angles, load, (coxa, femur, bend) = known[leg], measured[leg], loads[leg], joints[leg]
-            to_knee, _, to_hip, below_hip = _lever_arms(length, tibia, femur, bend)
+        arms = [_lever_arms(*leg[4:6], *turns[1:]) for leg, turns in zip(self._legs, joints, strict=True)]
+        loads = self._balanced_loads(known, joints, [to_hip for _, _, to_hip, _ in arms], dt)
+        for leg, (_, _, yaw, _, _, _, femur_yields, tibia_yields) in enumerate(self._legs):
+            force, angles, load, (coxa, femur, _) = known[leg], measured[leg], loads[leg], joints[leg]
+            to_knee, _, to_hip, below_hip = arms[leg]
             turned, bent = femur_yields * to_hip * load, tibia_yields * to_knee * load
             if force and angles:
                 # The torque that bends the femur is that of the whole force: feet lean against each other.
@@ -113,13 +114,14 @@ class DeflectionCompensation:
         self.offsets = np.array(offsets)
 
     def _balanced_loads(
-        self, forces: Sequence[Vector | None], joints: list[list[float]], dt: float
+        self, forces: Sequence[Vector | None], joints: list[list[float]], reaches: list[float], dt: float
     ) -> tuple[float, ...]:
         """Return the loads of the feet, as far as equilibrium asks for them; they follow the measured forces."""
-        follows, feet = min(_LOAD_RATE * dt, 1.0), list[tuple[float, float]]()
-        for leg, (force, (coxa, femur, bend)) in enumerate(zip(forces, joints, strict=True)):
-            x, y, yaw, out, length, tibia, *_ = self._legs[leg]
-            out += _lever_arms(length, tibia, femur, bend)[2]
+        follows = min(_LOAD_RATE * dt, 1.0)
+        feet: list[tuple[float, float]] = []
+        for leg, (force, (coxa, *_), to_hip) in enumerate(zip(forces, joints, reaches, strict=True)):
+            x, y, yaw, length = self._legs[leg][:4]
+            out = length + to_hip
             feet.append((x + out * math.cos(yaw + coxa), y + out * math.sin(yaw + coxa)))
             self._loads[leg] += follows * ((max(force[2], 0.0) if force else 0.0) - self._loads[leg])
         total = sum(self._loads)
