@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import tarsus
-from tarsus.control.pose import deflection_compensation
+from tarsus.control.pose import vertical_loads
 from tarsus.control.pose.deflection_compensation import _SHARE as SHARE
 from tarsus.control.pose.deflection_compensation import DeflectionCompensation
 from tarsus.control.readings import ValidReadings
@@ -28,10 +28,10 @@ def readings(softness, forces=_FORCES):
     return ValidReadings(joint_angles=measured, forces=tuple(map(tuple, forces.tolist())))
 
 
-def stepped(valid, *, robot=ROBOT, ticks=800, compensation=None, slope=0.0):
+def stepped(valid, *, robot=ROBOT, ticks=800, compensation=None, slope=0.0, bears=None):
     compensation = DeflectionCompensation(robot) if compensation is None else compensation
     for _ in range(ticks):
-        compensation.step(valid, ANGLES, 0.01, slope=slope)
+        compensation.step(valid, ANGLES, 0.01, slope=slope, bears=bears)
     return compensation
 
 
@@ -65,7 +65,7 @@ def turned_by(loads):
 
 
 def test_forces_with_which_feet_only_press_against_each_other_add_nothing(monkeypatch):
-    monkeypatch.setattr(deflection_compensation, "_BEARS", 0.01)
+    monkeypatch.setattr(vertical_loads, "_BEARS", 0.01)
     feet = np.array(tarsus.forward_kinematics(ROBOT, ANGLES))[:, 3, :2]
     loads = np.array([5.0, 6.0, 4.0, 5.0, 7.0, 6.0])
     equilibrium = np.vstack([np.ones(6), feet.T])
@@ -176,10 +176,41 @@ def test_angles_are_with_the_offsets_and_feet_without():
     assert not angles.flags.writeable
 
 
+def equilibrium(bears):
+    """Loads of three feet that carry the robot: three equations."""
+    feet = np.array(tarsus.forward_kinematics(ROBOT, ANGLES))[:, 3, :2]
+    centre, loads = np.array(tarsus.centre_of_mass(ROBOT, ANGLES))[:2], np.zeros(6)
+    weight = float(tarsus.total_mass(ROBOT)) * 9.80665
+    loads[bears] = np.linalg.solve(np.vstack([np.ones(3), feet[bears].T]), weight * np.array([1.0, *centre]))
+    return loads
+
+
+@pytest.mark.parametrize("softness", [0.0, 0.5, 1.0])
+def test_without_forces_the_feet_in_contact_share_the_weight(softness):
+    bears = np.array([True, False] * 3)
+    turned = turned_by(equilibrium(bears))
+    measured = tuple(map(tuple, (ANGLES + softness * turned).tolist()))
+    valid = ValidReadings(joint_angles=measured)
+    found = stepped(valid, bears=bears.tolist())
+    assert found.softness == pytest.approx(softness, abs=1e-6)
+    np.testing.assert_allclose(found.offsets, -SHARE * softness * turned, atol=1e-6)
+    # Feet that leave the ground give their load back, and so do legs whose joint angles are not measured any more.
+    assert np.abs(stepped(valid, bears=[False] * 6, compensation=found).offsets).max() < 1e-9
+    again = stepped(valid, bears=bears.tolist())
+    unread = valid._replace(joint_angles=(None, *measured[1:]))
+    assert np.abs(stepped(unread, bears=bears.tolist(), compensation=again).offsets[0]).max() < 1e-9
+
+
+def test_a_robot_without_masses_has_no_loads_by_contacts():
+    robot = ROBOT.replace(body_mass=None, link_mass=None)
+    valid = readings(1.0)._replace(forces=None)
+    assert stepped(valid, robot=robot, ticks=3, bears=[True] * 6).offsets is None
+
+
 def slip(**channels):
     """Slip of a felt walk in physics [m/m]."""
     robot = tarsus.load_robot("makeyourpet")
-    suite = SensorSuite(contacts=FootSwitch(), attitude=Sensor(), joint_angles=Sensor(), **channels)
+    suite = SensorSuite(contacts=FootSwitch(), attitude=Sensor(), **channels)
     plant, controller = SimulatedPlant(robot, sensors=suite), tarsus.RobotController(robot)
     output, slid, way = controller.output, 0.0, 0.0
     plant.start(output)
@@ -190,4 +221,6 @@ def slip(**channels):
 
 
 def test_feet_of_soft_legs_slip_less_in_physics():
-    assert slip(forces=Sensor()) < 0.6 * slip()
+    free = slip()
+    assert slip(joint_angles=Sensor()) < 0.6 * free
+    assert slip(joint_angles=Sensor(), forces=Sensor()) < 0.6 * free

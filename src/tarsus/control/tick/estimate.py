@@ -27,8 +27,12 @@ def estimated(walk: WalkComponents, tick: TickState, readings: SensorReadings | 
         return tick
     timing, angles = walk.transitions.timing, walk.time_scaling.angles
     state, legs = walk.ground.sense(readings, dt, tick.gait, timing=timing, angles=angles)
-    walk.solver.deflection.step(walk.ground.measured, angles, dt, slope=abs(walk.ground.body.stance.uphill))
-    walk.ground.body.lowered = walk.solver.deflection.lowered
+    ground, deflection = walk.ground, walk.solver.deflection
+    bears = None
+    if ground.measured.forces is None:
+        bears = [on and ground.contacts.touches(leg) for leg, on in enumerate(state.down.tolist())]
+    deflection.step(ground.measured, angles, dt, slope=abs(ground.body.stance.uphill), bears=bears)
+    ground.body.lowered = deflection.lowered
     if legs:
         walk.transitions.footholds.feet_landed(np.isin(np.arange(len(state.down)), legs))
     return tick if state is tick.gait else tick._replace(gait=state)

@@ -1,0 +1,93 @@
+"""Vertical loads of the feet of a live walk: what equilibrium asks for, by measured forces or by contacts."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from tarsus.control.readings import ValidReadings
+from tarsus.kinematics.mass import STANDARD_GRAVITY, centre_of_mass, total_mass
+from tarsus.load.foot_force import balanced_forces
+from tarsus.robot.robot import Robot
+
+__all__ = ["VerticalLoads"]
+
+# How fast the loads follow forces and contacts [1/s]: a foot that lands hard must not be pressed down further.
+_RATE = 30.0
+# Share of all load from which on a foot bears load in full.
+_BEARS = 0.2
+# Least number of feet that share the weight by their contacts.
+_FEWEST = 3
+
+
+class VerticalLoads:
+    """Shares the load of a robot out among its feet: by the forces on them, else its weight by their contacts.
+
+    Of measured forces only what equilibrium asks for counts: more than three feet press against each other, too, and
+    would do so more and more where commands are compensated by them.
+
+    Parameters
+    ----------
+    robot : Robot
+        A single robot. Without masses in its file contacts do not tell its loads.
+    """
+
+    def __init__(self, robot: Robot) -> None:
+        self._robot, self._loads = robot, [0.0] * robot.legs
+        self._weight = float(total_mass(robot)) * STANDARD_GRAVITY if robot.has_masses else 0.0
+        self._centre: list[float] | None = None
+
+    def are_known(self, valid: ValidReadings, bears: Sequence[bool] | None) -> bool:
+        """Return whether loads are known with the joint angles: by measured forces, or by contacts."""
+        by_contacts = bears is not None and self._weight > 0.0
+        return valid.joint_angles is not None and (valid.forces is not None or by_contacts)
+
+    def step(
+        self,
+        valid: ValidReadings,
+        bears: Sequence[bool] | None,
+        dt: float,
+        *,
+        feet: Sequence[Sequence[float]],
+        joints: Sequence[Sequence[float]],
+    ) -> tuple[float, ...]:
+        """Return the loads of the feet; they follow what is measured, and go back to 0 where it is not any more [N].
+
+        Parameters
+        ----------
+        valid : ValidReadings
+            The readings; a leg without joint angles, or without force where other legs have one, bears nothing.
+        bears : sequence of bool, or None
+            Which feet bear load: of use where forces are not measured.
+        dt : float
+            Time since the last tick [s].
+        feet : sequence of (x, y)
+            The feet in B [m].
+        joints : sequence of (coxa, femur, tibia)
+            Joint angles [rad].
+        """
+        nothing = (None,) * len(feet)
+        if valid.forces is not None:
+            measured = [max(force[2], 0.0) if force else 0.0 for force in valid.forces]
+        else:
+            measured = [self._weight / _FEWEST * bool(on) for on in bears or nothing]
+        angles = valid.joint_angles or nothing
+        measured = [load if known else 0.0 for load, known in zip(measured, angles, strict=True)]
+        follows = min(_RATE * dt, 1.0)
+        self._loads = [load + follows * (new - load) for load, new in zip(self._loads, measured, strict=True)]
+        total = sum(self._loads)
+        if not total:
+            return (0.0,) * len(feet)
+        bear = [min(load / (_BEARS * total), 1.0) for load in self._loads]
+        if valid.forces is None:
+            return balanced_forces(feet, bear, self._centre_of(joints), min(total, self._weight))
+        loaded = list(zip(self._loads, feet, strict=True))
+        centre = [sum(load * foot[axis] for load, foot in loaded) / total for axis in (0, 1)]
+        return balanced_forces(feet, bear, centre, total)
+
+    def _centre_of(self, joints: Sequence[Sequence[float]]) -> list[float]:
+        """Return the centre of mass, as it was when it was first of use: it moves little in B."""
+        if self._centre is None:
+            self._centre = centre_of_mass(self._robot, np.array(joints))[:2].tolist()
+        return self._centre
