@@ -1,5 +1,6 @@
 """Walks that feel slopes: clearance of swings, attitude where legs do not reach, and what physics makes of it."""
 
+import dataclasses
 import math
 
 import numpy as np
@@ -20,7 +21,7 @@ from tarsus.errors import InputError
 from tarsus.gait.foot_plane import FootPlane
 from tarsus.gait.stance.reachable_heights import reachable_share
 from tarsus.kinematics.stance import default_stance
-from tarsus.simulation import SimulatedPlant, terrain
+from tarsus.simulation import Sensor, SensorSuite, SimulatedPlant, terrain
 
 
 def test_a_swing_clears_the_ground_ahead_by_the_swing_height_on_a_slope():
@@ -250,6 +251,43 @@ def test_a_slippery_slope_is_refused_with_its_angle_and_the_way_back_stays_open(
     assert limit.refuses
     limit.step(FootPlane(0.0, -0.6, 0.0), -0.1 + 0j)
     assert not limit.refuses
+
+
+def test_a_body_that_legs_do_not_keep_level_waits_on_a_slope_until_it_is_level_again():
+    limit, up, down = SlopeLimit(0.8), FootPlane(0.0, 0.3, 0.0), -0.1 + 0j
+    limit.step(up, 0.1 + 0j, math.radians(11.0))
+    assert not limit.refuses
+    limit.step(up, 0.1 + 0j, math.radians(13.0))
+    assert limit.refuses
+    assert "tilts by 13 deg, at most 12 deg" in limit.reason
+    # It stays so while it levels, and the way back is open.
+    limit.step(up, 0.1 + 0j, math.radians(9.0))
+    assert limit.refuses
+    limit.step(up, down, math.radians(9.0))
+    assert not limit.refuses
+    limit.step(up, 0.1 + 0j, math.radians(7.0))
+    assert not limit.refuses
+    # On level ground it is an obstacle that tilts the body.
+    limit.step(FootPlane(0.0, 0.1, 0.0), 0.1 + 0j, math.radians(20.0))
+    assert not limit.refuses
+
+
+def test_a_robot_that_its_legs_do_not_keep_level_does_not_tip_over_backwards():
+    """Joint angles that are off by 0.3 deg make up half of this robot's room on the slope: it fell after 12 s."""
+    suite = dataclasses.replace(
+        SensorSuite.named("smart"), name=None, contacts=SensorSuite.named("ideal").contacts, attitude=Sensor()
+    )
+    robot = preset("makeyourpet")
+    plant = SimulatedPlant(robot, terrain=terrain.Ramp(slope=math.radians(20.0)), sensors=suite)
+    speed = 0.5 * WalkController(robot).top_speed((1.0, 0.0, 0.0))
+    controller, tilts, ways = RobotController(robot), [], []
+    plant.start(controller.output)
+    for _ in range(1300):
+        controller.step((speed, 0.0, 0.0), 0.01, plant.step(controller.output, 0.01))
+        tilts.append(abs(plant.state.body.rpy[1]))
+        ways.append(plant.state.body.position[0])
+    assert max(tilts) < math.radians(25.0)
+    assert ways[-1] > 0.75
 
 
 def test_less_friction_refuses_gentler_slopes():

@@ -195,7 +195,7 @@ class BodyMotion:
         level = self._ground.plane.levelled(self.tilt)
         # The way back stays open without an attitude, too.
         if self.tilt is not None or self.slope.refuses:
-            self.slope.step(level, complex(*twist[:2].tolist()))
+            self.slope.step(level, complex(*twist[:2].tolist()), math.hypot(*self.off))
         if self.tilt is not None:
             self.stance.step(level, rest - self.stance.shift, self.roughness.drawn_in, walks=bool(twist.any()))
         self._fit_height(state, rest, over, down, bears, dt)

@@ -1,4 +1,4 @@
-"""Slope limit: slopes that are too slippery for position-controlled legs are not walked further up or down."""
+"""Slope limit: no further up or down slopes that are too slippery, or on which legs do not keep the body level."""
 
 from __future__ import annotations
 
@@ -12,13 +12,16 @@ __all__ = ["SlopeLimit"]
 _PRELOAD = 0.32
 # How much less steep a slope is that is walked again [rad].
 _HYSTERESIS = math.radians(2.0)
+# Slope from which on a body waits that is so far off its attitude, until it is less so [rad].
+_SLOPES, _OFF, _LEVELLED = math.radians(8.0), math.radians(12.0), math.radians(8.0)
 
 
 class SlopeLimit:
-    """Refuses motion further up or down a slope on which feet would slip.
+    """Refuses motion further up or down a slope on which feet would slip, or the robot would tip over.
 
     Feet slip where the slope's tangent and the friction that legs use up against each other exceed the coefficient of
-    friction.
+    friction. A body that legs at the end of their reach no longer keep level shifts its weight downhill, which tilts it
+    further: it waits until it is level again.
 
     Parameters
     ----------
@@ -33,14 +36,16 @@ class SlopeLimit:
         The slope under the feet; where motion is refused, the steepest one since then [rad].
     refuses : bool
         Whether the motion is refused.
+    tilts : bool
+        Whether the body is too far off the attitude to keep, at the end of the legs' reach.
     """
 
     def __init__(self, friction: float) -> None:
         self.steepest = math.atan(max(friction - _PRELOAD, 0.0))
-        self.slope, self.refuses = 0.0, False
-        self._refused = 0.0
+        self.slope, self.refuses, self.tilts = 0.0, False, False
+        self._refused = self._off = 0.0
 
-    def step(self, level: FootPlane, velocity: complex) -> None:
+    def step(self, level: FootPlane, velocity: complex, off: float = 0.0) -> None:
         """Decide on a motion.
 
         Parameters
@@ -49,12 +54,15 @@ class SlopeLimit:
             The plane of the feet as a level body sees it.
         velocity : complex
             The velocity that is asked for [m/s].
+        off : float
+            By how much the body is off the attitude to keep [rad].
         """
         slope = math.atan(math.hypot(level.slope_x, level.slope_y))
         rises = velocity.real * level.slope_x + velocity.imag * level.slope_y
-        if slope < self.steepest - _HYSTERESIS:
+        self._off, self.tilts = off, slope > _SLOPES and off > (_LEVELLED if self.tilts else _OFF)
+        if slope < self.steepest - _HYSTERESIS and not self.tilts:
             self._refused = 0.0
-        elif slope > self.steepest and not self._refused:
+        elif (slope > self.steepest or self.tilts) and not self._refused:
             self._refused = rises
         self.slope = max(self.slope, slope) if self._refused else slope
         # The way back stays open.
@@ -63,5 +71,8 @@ class SlopeLimit:
     @property
     def reason(self) -> str:
         """Why motion is refused."""
+        if self.tilts:
+            off, most = math.degrees(self._off), math.degrees(_OFF)
+            return f"a slope on which the body tilts by {off:.0f} deg, at most {most:.0f} deg: the legs reach no further"
         steepest = f"the steepest one for their friction is {math.degrees(self.steepest):.0f} deg"
         return f"a slope of {math.degrees(self.slope):.0f} deg, on which feet slip; {steepest}"
