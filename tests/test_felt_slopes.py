@@ -259,7 +259,7 @@ def test_a_body_that_legs_do_not_keep_level_waits_on_a_slope_until_it_is_level_a
     assert not limit.refuses
     limit.step(up, 0.1 + 0j, math.radians(13.0))
     assert limit.refuses
-    assert "tilts by 13 deg, at most 12 deg" in limit.reason
+    assert "off by 13 deg, at most 12 deg" in limit.reason
     # It stays so while it levels, and the way back is open.
     limit.step(up, 0.1 + 0j, math.radians(9.0))
     assert limit.refuses
