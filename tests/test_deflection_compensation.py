@@ -191,20 +191,20 @@ def test_without_forces_the_feet_in_contact_share_the_weight(softness):
     turned = turned_by(equilibrium(bears))
     measured = tuple(map(tuple, (ANGLES + softness * turned).tolist()))
     valid = ValidReadings(joint_angles=measured)
-    found = stepped(valid, bears=bears.tolist())
+    found = stepped(valid, bears=bears.tolist)
     assert found.softness == pytest.approx(softness, abs=1e-6)
     np.testing.assert_allclose(found.offsets, -SHARE * softness * turned, atol=1e-6)
     # Feet that leave the ground give their load back, and so do legs whose joint angles are not measured any more.
-    assert np.abs(stepped(valid, bears=[False] * 6, compensation=found).offsets).max() < 1e-9
-    again = stepped(valid, bears=bears.tolist())
+    assert np.abs(stepped(valid, bears=lambda: [False] * 6, compensation=found).offsets).max() < 1e-9
+    again = stepped(valid, bears=bears.tolist)
     unread = valid._replace(joint_angles=(None, *measured[1:]))
-    assert np.abs(stepped(unread, bears=bears.tolist(), compensation=again).offsets[0]).max() < 1e-9
+    assert np.abs(stepped(unread, bears=bears.tolist, compensation=again).offsets[0]).max() < 1e-9
 
 
 def test_a_robot_without_masses_has_no_loads_by_contacts():
     robot = ROBOT.replace(body_mass=None, link_mass=None)
     valid = readings(1.0)._replace(forces=None)
-    assert stepped(valid, robot=robot, ticks=3, bears=[True] * 6).offsets is None
+    assert stepped(valid, robot=robot, ticks=3, bears=lambda: [True] * 6).offsets is None
 
 
 def slip(**channels):

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -68,7 +68,7 @@ class DeflectionCompensation:
         dt: float,
         *,
         slope: float,
-        bears: Sequence[bool] | None = None,
+        bears: Callable[[], Sequence[bool]] | None = None,
     ) -> None:
         """Follow the loads and learn the softness.
 
@@ -82,7 +82,7 @@ class DeflectionCompensation:
             Time since the last tick [s].
         slope : float
             Slope under the feet [m/m].
-        bears : sequence of bool, optional
+        bears : callable, optional
             Which feet bear load: they share the robot's weight out where forces are not measured.
         """
         if self.offsets is None:

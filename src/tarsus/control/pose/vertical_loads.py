@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 import numpy as np
 
@@ -38,7 +38,7 @@ class VerticalLoads:
         self._weight = float(total_mass(robot)) * STANDARD_GRAVITY if robot.has_masses else 0.0
         self._centre: list[float] | None = None
 
-    def are_known(self, valid: ValidReadings, bears: Sequence[bool] | None) -> bool:
+    def are_known(self, valid: ValidReadings, bears: Callable[[], Sequence[bool]] | None) -> bool:
         """Return whether loads are known with the joint angles: by measured forces, or by contacts."""
         by_contacts = bears is not None and self._weight > 0.0
         return valid.joint_angles is not None and (valid.forces is not None or by_contacts)
@@ -46,7 +46,7 @@ class VerticalLoads:
     def step(
         self,
         valid: ValidReadings,
-        bears: Sequence[bool] | None,
+        bears: Callable[[], Sequence[bool]] | None,
         dt: float,
         *,
         feet: Sequence[Sequence[float]],
@@ -58,7 +58,7 @@ class VerticalLoads:
         ----------
         valid : ValidReadings
             The readings; a leg without joint angles, or without force where other legs have one, bears nothing.
-        bears : sequence of bool, or None
+        bears : callable, or None
             Which feet bear load: of use where forces are not measured.
         dt : float
             Time since the last tick [s].
@@ -71,7 +71,7 @@ class VerticalLoads:
         if valid.forces is not None:
             measured = [max(force[2], 0.0) if force else 0.0 for force in valid.forces]
         else:
-            measured = [self._weight / _FEWEST * bool(on) for on in bears or nothing]
+            measured = [self._weight / _FEWEST * bool(on) for on in (bears() if bears else nothing)]
         angles = valid.joint_angles or nothing
         measured = [load if known else 0.0 for load, known in zip(measured, angles, strict=True)]
         follows = min(_RATE * dt, 1.0)
