@@ -73,6 +73,6 @@ class SlopeLimit:
         """Why motion is refused."""
         if self.tilts:
             off, most = math.degrees(self._off), math.degrees(_OFF)
-            return f"a slope on which legs do not keep the body level: it is off by {off:.0f} deg, at most {most:.0f} deg"
+            return f"a slope on which legs do not keep the body level: off by {off:.0f} deg, at most {most:.0f} deg"
         steepest = f"the steepest one for their friction is {math.degrees(self.steepest):.0f} deg"
         return f"a slope of {math.degrees(self.slope):.0f} deg, on which feet slip; {steepest}"
