@@ -29,3 +29,17 @@ def test_feet_are_due_in_the_tick_in_which_they_lift_off(gait, monkeypatch):
     for due, any_due, lifts in ticks:
         np.testing.assert_array_equal(due, lifts)
         assert any_due == any(due)
+
+
+@pytest.mark.parametrize(
+    ("gait", "redundant"),
+    [
+        (Gait.named("tripod"), False),
+        (Gait.named("tetrapod"), True),
+        (Gait.named("wave"), True),
+        # Four feet stand on the average, and two for a moment.
+        (Gait(2 / 3, (0.0, 0.0, 0.0, 0.05, 0.5, 0.5)), False),
+    ],
+)
+def test_feet_are_redundant_where_more_than_three_stand_at_any_time(gait, redundant):
+    assert StepTiming.of(gait, 1.0).redundant is redundant

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from functools import cached_property
 from typing import TYPE_CHECKING, NamedTuple, Self, TypeAlias
 
 import numpy as np
@@ -185,7 +186,7 @@ class Gait:
         """Number of legs."""
         return len(self.offsets)
 
-    @property
+    @cached_property
     def fewest_feet_down(self) -> int:
         """Least number of feet on the ground during the cycle."""
         # The number decreases only at lift-offs.

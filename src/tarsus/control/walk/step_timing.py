@@ -17,8 +17,8 @@ __all__ = ["NextLift", "StepTiming"]
 
 # The twist follows its target within about one stance: faster, and standing feet would be left behind.
 _TIME_CONSTANTS_PER_STANCE = 4.0
-# Mean number of standing feet above which more than three stand at any time.
-_THREE = 3.9
+# Number of feet that hold a robot.
+_HELD = 3
 
 
 class StepTiming(NamedTuple):
@@ -67,7 +67,7 @@ class StepTiming(NamedTuple):
     @property
     def redundant(self) -> bool:
         """Whether more than three feet stand at any time."""
-        return len(self.gait.offsets) * self.gait.duty_factor > _THREE
+        return self.gait.fewest_feet_down > _HELD
 
     def steps_like(self, gait: Gait) -> bool:
         """Return whether another gait has the same steps and the same kind of body motion.
