@@ -78,6 +78,7 @@ def test_without_the_shift_the_same_gait_tips_over():
     assert motion.problems[0].startswith("tips over")
 
 
+@pytest.mark.no_cover
 @pytest.mark.parametrize("direction", [0.0, 1.2, (0, 0, 1)])
 def test_the_longest_stroke_is_possible_and_a_longer_one_is_not(direction):
     robot = ring_robot(4)

@@ -149,6 +149,7 @@ def drive(arguments, human, monkeypatch):
     return ended.value.code
 
 
+@pytest.mark.no_cover
 @pytest.mark.parametrize("kind", ["feetech-sts", "servo2040"])
 def test_a_machine_is_brought_up_over_a_terminal(kind, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
@@ -166,6 +167,7 @@ def test_a_machine_is_brought_up_over_a_terminal(kind, tmp_path, monkeypatch):
     assert any("slow walk in the air" in question for question in human.seen)
 
 
+@pytest.mark.no_cover
 def test_wrong_answers_unplugging_and_leaving_do_no_harm(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     machine = Machine("feetech-sts", seed=1)

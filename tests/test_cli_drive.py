@@ -15,6 +15,7 @@ from tarsus.scenario.summary import drive_summary
 TIMELINE = "at 0 s: walk 40 mm/s; at 1 s: gait ripple; at 4 s: stop"
 
 
+@pytest.mark.no_cover
 def test_the_numbers_are_those_of_the_same_scenario_in_python():
     code, document = run_json("drive", "--dry", TIMELINE, "--robot", "phantomx", "--rate", "50")
     assert code == 0
@@ -38,6 +39,7 @@ def test_it_prints_a_table_and_the_verdict():
         assert words in result.stdout
 
 
+@pytest.mark.no_cover
 def test_out_gets_tables_motion_and_pictures(tmp_path):
     path = tmp_path / "short.toml"
     scenario = scenario_from_text("at 0 s: walk 30 mm/s", duration=0.6, rate=50.0, robot="mithi", name="short")
@@ -56,6 +58,7 @@ def test_out_gets_tables_motion_and_pictures(tmp_path):
         assert len(list(csv.reader(file))) == 1 + len(recording.motion.time)
 
 
+@pytest.mark.no_cover
 def test_files_are_named_after_they_are_written(tmp_path):
     result = run("drive", "--dry", "at 0 s: stop", "--rate", "20", "--out", tmp_path, "--no-animation", "--no-guard")
     assert result.exit_code == 0
@@ -76,6 +79,7 @@ def test_a_rejected_command_is_reported_with_exit_code_1():
     assert "power_off: the robot stands" in result.stdout
 
 
+@pytest.mark.no_cover
 @pytest.mark.parametrize(
     ("timeline", "kind"),
     [

@@ -52,6 +52,7 @@ def test_every_command_has_json_and_documented_options(path):
     assert all(option.help for option in options)
 
 
+@pytest.mark.no_cover
 @pytest.mark.parametrize("example", EXAMPLES)
 def test_examples_run(example, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)

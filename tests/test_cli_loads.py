@@ -103,6 +103,7 @@ def test_current_and_battery_life():
     assert f"battery life {drawn['battery_min']:.0f} min" in text
 
 
+@pytest.mark.no_cover
 def test_robot_without_servos(tmp_path):
     save_robot(load_robot("strider").replace(servos=()), tmp_path / "bare.toml")
     result = run("loads", tmp_path / "bare.toml", *SHORT, "--out", tmp_path / "out")
@@ -116,6 +117,7 @@ def test_robot_without_servos(tmp_path):
     assert "the robot file names no servo for the coxa of LF: the masses of the robot file are used" in sized.stdout
 
 
+@pytest.mark.no_cover
 def test_tipping_robot(tmp_path):
     save_robot(load_robot("strider").replace(body_com=np.array([0.4, 0.0, 0.0])), tmp_path / "nose.toml")
     result = run("loads", tmp_path / "nose.toml", *SHORT)
@@ -127,6 +129,7 @@ def test_tipping_robot(tmp_path):
     assert "; the robot tips" in sized.stdout
 
 
+@pytest.mark.no_cover
 def test_output_files(tmp_path):
     code, document = run_json("loads", "strider", *SHORT, "--out", tmp_path)
     assert code == 0
@@ -145,6 +148,7 @@ def test_output_files(tmp_path):
     assert f"wrote {tmp_path / 'report.html'}" in shown
 
 
+@pytest.mark.no_cover
 @pytest.mark.parametrize("name", ["loads.csv", "report.html", "torques.png"])
 def test_unwritable_file(tmp_path, name):
     (tmp_path / name).mkdir()
@@ -153,6 +157,7 @@ def test_unwritable_file(tmp_path, name):
     assert f"{name} can't be written" in result.stderr
 
 
+@pytest.mark.no_cover
 def test_servos_match_size_servos(monkeypatch):
     monkeypatch.setenv("COLUMNS", "120")
     code, document = run_json("servos", "strider", *SHORT, "--factor", "1.5", "--payload", "0.1")
@@ -178,6 +183,7 @@ def test_servos_match_size_servos(monkeypatch):
     assert text.splitlines()[-1] == "the robot's servos are sufficient (with estimated leg.servo)"
 
 
+@pytest.mark.no_cover
 def test_insufficient_servos(monkeypatch):
     monkeypatch.setenv("COLUMNS", "120")
     result = run("servos", EXAMPLES / "burnt-mg996r.toml", *SHORT)
@@ -194,6 +200,7 @@ def test_insufficient_servos(monkeypatch):
     assert "no servo of the catalogue is sufficient in all joints" in hopeless.stdout
 
 
+@pytest.mark.no_cover
 def test_continuous_rule():
     code, document = run_json(
         "servos", "strider", *SHORT, "--rule", "continuous", "--gait", "wave", "--body-height", "140"
@@ -204,6 +211,7 @@ def test_continuous_rule():
     assert "payload: none at the continuous load limit; " in text
 
 
+@pytest.mark.no_cover
 def test_advice_comes_first_with_a_factor_for_each_change_and_payload_in_plain_words(monkeypatch):
     monkeypatch.setenv("COLUMNS", "120")
     text = run("servos", "strider", *SHORT).stdout

@@ -113,6 +113,7 @@ def test_a_copy_asks_for_the_masses_that_are_unknown(tmp_path, known):
     assert robot_from_text(text.replace("# mass_kg = ", "mass_kg = "), where="filled").has_masses
 
 
+@pytest.mark.no_cover
 def test_check_warns_with_the_cause_and_strict_makes_it_an_error(tmp_path):
     file = tmp_path / "mine.toml"
     file.write_text(template_text("mine").replace("size_mm = [220, 140, 50]", "size_mm = [22, 14, 5]"), "utf-8")
@@ -142,6 +143,7 @@ def test_check_plans_a_walk_with_every_gait(tmp_path):
     assert "cannot walk: " in result.stdout
 
 
+@pytest.mark.no_cover
 def test_check_says_what_is_estimated_and_what_to_weigh(tmp_path):
     file = tmp_path / "mine.toml"
     assert run("robots", "new", "mine", "--out", file).exit_code == 0
@@ -150,6 +152,7 @@ def test_check_says_what_is_estimated_and_what_to_weigh(tmp_path):
     assert "tarsus robots new my-freenove --from freenove" in run("loads", "freenove").stderr
 
 
+@pytest.mark.no_cover
 def test_verdicts_on_estimated_masses_say_so(tmp_path):
     file = tmp_path / "mine.toml"
     assert run("robots", "new", "mine", "--out", file).exit_code == 0

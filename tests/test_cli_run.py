@@ -46,6 +46,7 @@ def served(kind, tmp_path, **faults):
     return line, server
 
 
+@pytest.mark.no_cover
 def test_an_emulated_robot_walks_and_is_recorded(tmp_path):
     code, found = run_json("run", "strider", "--bus", "emulated", "--duration", "0.4", "--out", tmp_path)
     assert (code, found["problems"]) == (0, [])
@@ -72,6 +73,7 @@ def mcap_messages(path):
         return [json.loads(message.data) for _, _, message in make_reader(file).iter_messages()]
 
 
+@pytest.mark.no_cover
 def test_a_fault_ends_with_an_exit_code_its_joint_and_a_complete_log(tmp_path):
     line, server = served("feetech-sts", tmp_path)
     with server:
@@ -86,6 +88,7 @@ def test_a_fault_ends_with_an_exit_code_its_joint_and_a_complete_log(tmp_path):
     assert "middle left femur: overheated" in "".join(faults)
 
 
+@pytest.mark.no_cover
 @pytest.mark.parametrize("name", ["telemetry.csv", "telemetry.mcap"])
 def test_a_full_disk_ends_the_log_and_not_the_walk(name, tmp_path):
     (tmp_path / name).symlink_to("/dev/full")
@@ -148,6 +151,7 @@ def test_a_calibration_does_not_become_one_of_another_bus(tmp_path):
         assert message in result.stderr
 
 
+@pytest.mark.no_cover
 def test_an_interrupted_run_tells_what_was_recorded_and_what_could_not_be_released(tmp_path, monkeypatch):
     command = Supervised.command
 

@@ -50,6 +50,7 @@ def test_feet_slide_less_with_commands_that_compensate(servos):
     assert any("compensate for 75 % of the deflection" in line for line in after["assumed"])
 
 
+@pytest.mark.no_cover
 @pytest.mark.parametrize("servos", ["catalogue", "ideal"])
 def test_a_scenario_is_compensated_too(servos):
     options = f'simulate strider --scenario "at 0 s: walk 50 mm/s; at 0.3 s: stop" --servos {servos} --sensors blind'
@@ -66,6 +67,7 @@ def test_the_table_has_plan_and_physics():
         assert part in text
 
 
+@pytest.mark.no_cover
 def test_files_are_written(tmp_path):
     code, text = run(f"{SHORT} --servos ideal --out {tmp_path / 'out'} --zarr --video {tmp_path / 'walk.gif'}")
     assert code == 0
@@ -78,6 +80,7 @@ def test_files_are_written(tmp_path):
 
 
 # JAX, which other tests of this process may have started, warns of every fork.
+@pytest.mark.no_cover
 @pytest.mark.filterwarnings("ignore:os.fork:RuntimeWarning")
 def test_a_video_is_an_mp4_file(tmp_path):
     code, _ = run(f"{SHORT} --servos ideal --terrain blocks:rise=10,clear=200 --video {tmp_path / 'walk.mp4'}")

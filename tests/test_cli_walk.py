@@ -79,6 +79,7 @@ def test_table_and_verdict():
     assert "wrote" not in result.stdout
 
 
+@pytest.mark.no_cover
 def test_output_files(tmp_path):
     out = tmp_path / "deep" / "walk"
     options = "--distance 30 --stroke 20 --cycle 0.6 --rate 50"

@@ -136,6 +136,7 @@ def test_a_batch_equals_its_loop():
             np.testing.assert_array_equal(contacts, down)
 
 
+@pytest.mark.no_cover
 @pytest.mark.parametrize("library", [jnp, array_api_strict], ids=["jax", "strict"])
 @pytest.mark.parametrize("given", ["rest", "twist", "swing_height", "phases"])
 def test_any_argument_may_be_of_another_library(library, given):
@@ -153,6 +154,7 @@ def test_any_argument_may_be_of_another_library(library, given):
     np.testing.assert_array_equal(np.asarray(contacts), down)
 
 
+@pytest.mark.no_cover
 def test_feet_are_differentiable_in_the_stroke_under_jit():
     gait, rest = Gait.named("tripod"), rest_of()
     direction = unit_twist(rest, (1.0, 0.3, 2.0))

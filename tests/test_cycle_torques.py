@@ -91,6 +91,7 @@ def test_presets_match_the_general_functions(name, gait):
     assert found.ok == bool(expected[0].ok.all() and (expected[3] >= 0).all())
 
 
+@pytest.mark.no_cover
 @given(seed=seeds(), gait=st.sampled_from(HEXAPOD_GAITS), heading=st.floats(-4, 4))
 def test_batch_equals_loop(seed, gait, heading):
     rng = np.random.default_rng(seed)
@@ -225,6 +226,7 @@ def test_jax_agrees_for_unreachable_feet_and_tipping_robots():
     np.testing.assert_array_equal(expected[-1], [True, False, False])
 
 
+@pytest.mark.no_cover
 def test_gradient_against_finite_differences(monkeypatch):
     # Every foot is within reach; one correction towards the nearest reachable point compiles in half the time.
     monkeypatch.setattr("tarsus.kinematics.nearest._STEP_SIZES", (1.0,))

@@ -78,6 +78,7 @@ def test_forces_with_which_feet_only_press_against_each_other_add_nothing(monkey
         np.testing.assert_allclose(stepped(valid).offsets, expected, atol=1e-6)
 
 
+@pytest.mark.no_cover
 @pytest.mark.parametrize("servos", ["ideal", "catalogue"])
 def test_in_physics_the_feet_of_a_wave_walk_slide_little(servos):
     """Feet that had lost contact searched at once and lifted the others off; loaded ones were pressed further down."""
@@ -220,6 +221,7 @@ def slip(**channels):
     return slid / way
 
 
+@pytest.mark.no_cover
 def test_feet_of_soft_legs_slip_less_in_physics():
     free = slip()
     assert slip(joint_angles=Sensor()) < 0.6 * free

@@ -195,6 +195,7 @@ def climbed(degrees, *, seconds=9.0, speed=0.146, start=0.35):
     return way / (speed * seconds), math.hypot(*plant.state.body.rpy[:2]), slip / way, controller
 
 
+@pytest.mark.no_cover
 def test_a_slope_of_ten_degrees_costs_next_to_nothing():
     way, tilt, slip, _ = climbed(10.0)
     assert way > 0.94
@@ -202,6 +203,7 @@ def test_a_slope_of_ten_degrees_costs_next_to_nothing():
     assert tilt < math.radians(2.0)
 
 
+@pytest.mark.no_cover
 def test_a_robot_walks_up_a_slope_of_twenty_degrees_level_and_stands_on_it():
     way, tilt, slip, controller = climbed(20.0)
     assert way > 0.85
@@ -212,6 +214,7 @@ def test_a_robot_walks_up_a_slope_of_twenty_degrees_level_and_stands_on_it():
     assert np.abs(walk._walk.ground.body.stance.shift).max() > 0.05
 
 
+@pytest.mark.no_cover
 @pytest.mark.parametrize(("name", "rises"), [("phantomx", 20.0), ("phantomx", -20.0), ("makeyourpet", 20.0)])
 def test_robots_that_stop_on_a_slope_stay_there(name, rises):
     robot, dt = preset(name), 0.01
@@ -298,6 +301,7 @@ def test_less_friction_refuses_gentler_slopes():
         GroundAdaptation(friction=-1.0)
 
 
+@pytest.mark.no_cover
 def test_a_robot_stops_on_a_slope_that_is_too_steep_says_so_and_walks_back():
     robot, dt = preset("strider"), 0.01
     plant = SimulatedPlant(robot, terrain=terrain.Ramp(slope=math.radians(15), start=0.3, length=5.0))
@@ -315,6 +319,7 @@ def test_a_robot_stops_on_a_slope_that_is_too_steep_says_so_and_walks_back():
     assert places[2] < places[1] - 0.15
 
 
+@pytest.mark.no_cover
 @pytest.mark.parametrize(("servos", "sensors"), [("catalogue", "ideal"), ("ideal", "hobby")])
 def test_a_robot_that_stands_on_flat_ground_does_not_move(servos, sensors):
     robot, dt, moved = preset("phantomx"), 0.01, []

@@ -122,6 +122,7 @@ class Rig:
         return tarsus.run(self.controller, self.plant, [(0.0, Command(twist=twist))], duration=duration)
 
 
+@pytest.mark.no_cover
 @pytest.mark.parametrize("kind", BOARDS)
 def test_a_robot_walks_with_what_its_feet_feel(kind):
     rig = Rig(nominal_calibration(STRIDER, "strider", kind=kind).replace(foot_switches=BOARDS[kind]))

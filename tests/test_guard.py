@@ -128,6 +128,7 @@ def contacts_of(kind, rng, motion, tick):
 BODIES = (None, Pose(), Pose.from_rpy(0.1, 0.2, 3.0), Pose.from_rpy(0.0, [0.1, 0.2]), "level", np.eye(3))
 
 
+@pytest.mark.no_cover
 @settings(max_examples=150)
 @given(SEGMENTS, st.sampled_from(["hold", "sit"]), st.sampled_from(["near", "reset"]), st.sampled_from(PRESETS))
 def test_the_output_keeps_all_bounds_for_any_input(segments, policy, recover, name):

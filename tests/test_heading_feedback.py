@@ -108,6 +108,7 @@ def heading_after_a_twist_of_the_body(sensors):
     return max(found), found[-1]
 
 
+@pytest.mark.no_cover
 def test_in_physics_a_body_that_is_turned_goes_back_to_its_heading():
     ideal = SensorSuite.named("ideal")
     most, last = heading_after_a_twist_of_the_body(ideal)

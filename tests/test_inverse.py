@@ -210,6 +210,7 @@ def within_limits(robot, angles):
     return (angles >= low - 1e-9).all() and (angles <= high + 1e-9).all()
 
 
+@pytest.mark.no_cover
 @pytest.mark.parametrize("knee", KNEES)
 @given(robot=robots(), seed=seeds())
 def test_angles_are_always_within_the_limits(knee, robot, seed):
@@ -331,6 +332,7 @@ def test_a_batch_equals_its_loop(batch, legs, with_body):
         assert np.abs(found.angles[i] - one.angles).max() <= 1e-14
 
 
+@pytest.mark.no_cover
 @pytest.mark.parametrize("with_body", [False, True])
 def test_a_thousand_designs_in_one_call(with_body):
     rng = np.random.default_rng(4)
@@ -474,6 +476,7 @@ def test_gradients_with_respect_to_a_length_are_the_finite_differences():
     assert abs(float(found) - (tibias(1 + step) - tibias(1 - step)) / (2 * step)) <= 1e-7
 
 
+@pytest.mark.no_cover
 @pytest.mark.parametrize(("offset", "equal"), [(0.0, True), (0.01, False)])
 def test_gradients_are_finite_at_singular_and_unreachable_points_too(offset, equal, monkeypatch):
     monkeypatch.setattr("tarsus.kinematics.nearest._STEP_SIZES", (1.0,))  # compiles in a third of the time

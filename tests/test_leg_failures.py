@@ -201,6 +201,7 @@ def test_four_legs_walk_whichever_they_are(lost):
     assert output.body.position[0] > 0.03
 
 
+@pytest.mark.no_cover
 def test_a_limp_servo_is_found_in_physics_and_the_robot_walks_on():
     plant = SimulatedPlant(STRIDER)
     controller = tarsus.RobotController(STRIDER)
@@ -226,6 +227,7 @@ def test_a_limp_servo_is_found_in_physics_and_the_robot_walks_on():
     assert not controller.output.contacts[1]
 
 
+@pytest.mark.no_cover
 def test_told_of_it_a_robot_walks_stands_and_sits_without_a_leg():
     controller = tarsus.RobotController(STRIDER)
     for _ in range(50):

@@ -158,6 +158,7 @@ def test_other_libraries_agree(xp):
     np.testing.assert_allclose(np.asarray(got), 1 / 6, rtol=0, atol=1e-15)
 
 
+@pytest.mark.no_cover
 def test_jit_and_derivative():
     # Well inside the polygon, so that the load can be moved.
     x, y = np.array([[1.0, 1], [-1, 1], [-1, -1], [1, -1], [0.2, 0.1]]).T[..., None]

@@ -123,6 +123,7 @@ def walked(ground, *, seconds=10.0, **adaptation):
     return plant.state.body.position[0] / (0.08 * seconds), fastest / 0.08
 
 
+@pytest.mark.no_cover
 def test_over_blocks_more_of_the_way_is_made_and_on_flat_ground_nothing_changes():
     more = 0.0
     for seed in (1, 2):

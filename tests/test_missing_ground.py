@@ -76,6 +76,7 @@ def test_holes_and_edges_are_smaller_for_short_legs():
     assert back.real < 0 < pace < 1
 
 
+@pytest.mark.no_cover
 def test_a_robot_with_short_legs_stops_at_an_edge_and_walks_away_from_it():
     robot = halved(tarsus.load_robot("strider"))
     walk = Walk(terrain.Gaps(start=0.255, width=0.3, depth=0.3, count=1), robot=robot)
@@ -279,6 +280,7 @@ def test_feet_over_their_commands_are_known_where_angles_are_measured():
     assert odometry.raised([0, 3], None, commanded) == {}
 
 
+@pytest.mark.no_cover
 @pytest.mark.parametrize(
     ("name", "pace", "rise", "start"),
     [("phantomx", 0.6, -0.04, 0.5), ("ch3r", 0.5, -0.025, 0.5), ("makeyourpet", 0.5, -0.05, 0.54)],
@@ -399,6 +401,7 @@ class Walk:
         return {limit.leg for limit in self.output.limitations if limit.kind is LimitationKind.GROUND and limit.leg}
 
 
+@pytest.mark.no_cover
 def test_a_robot_stops_at_a_wall_says_so_and_walks_away_from_it():
     walk = Walk(terrain.Step(rise=0.15, start=0.41))
     stopped = walk.go(0.13, 4.5)
@@ -466,6 +469,7 @@ def test_a_robot_comes_back_whose_foot_has_found_no_ground_at_any_place_behind_a
     assert walk.go(-0.26, 5.0) < stopped - 0.3
 
 
+@pytest.mark.no_cover
 def test_a_robot_that_sees_a_hole_stops_before_it_and_walks_away():
     walk = Walk(terrain.Gaps(start=0.4, width=0.2, depth=0.15, count=1), sensors="camera")
     stopped = walk.go(0.13, 3.5)
@@ -477,6 +481,7 @@ def test_a_robot_that_sees_a_hole_stops_before_it_and_walks_away():
     assert walk.go(-0.13, 2.0) < stopped - 0.1
 
 
+@pytest.mark.no_cover
 def test_a_robot_crosses_a_trench_that_it_sees():
     walk = Walk(terrain.Gaps(start=0.35, width=0.08, depth=0.15, count=1), sensors="camera")
     assert walk.go(0.19, 4.5) > 0.35 + 0.08
@@ -748,6 +753,7 @@ def test_another_foot_without_ground_does_not_change_the_side_of_a_known_edge():
     assert limited(missing, 0.1, 0.0, 0.0).fraction == 0.0
 
 
+@pytest.mark.no_cover
 def test_a_robot_whose_foot_slides_off_a_platform_does_not_fall():
     robot = tarsus.load_robot("strider")
     speed = 0.25 * tarsus.WalkController(robot).top_speed((1, 0, 0))

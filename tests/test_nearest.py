@@ -74,6 +74,7 @@ def unreachable_feet(rng, robot, near_axis):
     return robot.mount_position + feet
 
 
+@pytest.mark.no_cover
 @pytest.mark.parametrize("knee", ["up", "down"])
 @pytest.mark.parametrize("sideways", [0.0, 0.03])
 @pytest.mark.parametrize("limits", ["random", "full"])

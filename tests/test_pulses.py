@@ -51,6 +51,7 @@ def table(text, name):
     ]
 
 
+@pytest.mark.no_cover
 @pytest.mark.parametrize(
     "path", [("--distance", "300"), ("--curve", "40", "--centre", "0,300"), ("--twist", "20,5,4", "--duration", "2")]
 )

@@ -57,6 +57,7 @@ def ways(robot, leg, foot, knee):
         yield (Reach(Reach.COXA_LIMIT + broken[0]) if broken else Reach.OK), doubt
 
 
+@pytest.mark.no_cover
 @pytest.mark.parametrize("knee", ["up", "down"])
 @given(seed=seeds())
 @example(seed=10000)  # a foot beside the leg's plane and far away
@@ -92,6 +93,7 @@ def low_body(rng, batch=()):
     return Pose.from_rpy(*tilt, rng.uniform(-3, 3, batch), rng.uniform([-1, -1, -0.1], [1, 1, 0.35], (*batch, 3)))
 
 
+@pytest.mark.no_cover
 @given(seed=seeds())
 def test_below_ground_agrees_with_the_points(seed):
     rng = np.random.default_rng(seed)
@@ -169,6 +171,7 @@ def number(pattern, text):
     return float(re.search(pattern, text).group(1))
 
 
+@pytest.mark.no_cover
 @pytest.mark.parametrize("with_body", [False, True])
 @given(seed=seeds())
 def test_explanations_are_correct(with_body, seed):
@@ -335,6 +338,7 @@ def test_in_a_batch_the_sample_is_named_and_long_lists_are_cut(xp):
     assert lines[:12] == expected[:12]
 
 
+@pytest.mark.no_cover
 @settings(max_examples=10)
 @given(knee=st.sampled_from(["up", "down"]), seed=seeds())
 def test_explaining_has_no_side_effects(knee, seed):

@@ -16,6 +16,7 @@ from tarsus.report.view import View
 SMALL = (200, 160)
 
 
+@pytest.mark.no_cover
 def test_gif_in_real_time(tmp_path):
     motion, fractions = sample_walk("straight"), []
     count = animate(motion, tmp_path / "walk.gif", max_duration=1.0, size=SMALL, progress=fractions.append)
@@ -35,6 +36,7 @@ def test_gif_in_real_time(tmp_path):
     assert len(fractions) == count
 
 
+@pytest.mark.no_cover
 def test_default_walk_is_below_3_megabytes(tmp_path):
     motion = plan_walk(ring_robot(6), Gait.named("tripod"), straight_path(0.1))
     count = animate(motion, tmp_path / "walk.gif", max_duration=0.6)

@@ -226,6 +226,7 @@ def test_length_advice():
 # The page
 
 
+@pytest.mark.no_cover
 def test_page_is_self_contained_and_complete(tmp_path):
     found = sample_loads("burnt-mg996r", payload=0.2)
     summary = summary_of(found)

@@ -299,6 +299,7 @@ def test_check_lists_servos_with_unknown_speed():
     assert report["missing"] == ["no_load_rad_s of the servo DS3225: without it, joint speeds are limited to 286 deg/s"]
 
 
+@pytest.mark.no_cover
 @pytest.mark.parametrize(
     ("gait", "text"),
     [
@@ -349,6 +350,7 @@ def test_check_of_a_gait_for_another_number_of_legs_names_those_that_exist():
     assert "tripod" in possible
 
 
+@pytest.mark.no_cover
 def test_check_lists_what_is_estimated():
     assert check_robot(load_robot("ch3r"))["estimated"] == ["body.mass_kg", "leg.mass_kg"]
     assert check_robot(ring_robot(6))["estimated"] == []

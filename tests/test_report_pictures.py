@@ -41,6 +41,7 @@ def line(axes, label):
 # All figures
 
 
+@pytest.mark.no_cover
 @pytest.mark.parametrize("kind", WALKS)
 @pytest.mark.parametrize("plot", PLOTS)
 def test_figures_fit_and_axes_have_units(plot, kind):
@@ -62,6 +63,7 @@ def test_background_is_white():
     assert to_hex(new_figure(width=2, height=1).get_facecolor()) == "#ffffff"
 
 
+@pytest.mark.no_cover
 def test_pyplot_is_not_imported():
     code = (
         "import sys, tarsus\n"
@@ -246,6 +248,7 @@ def test_decimation_of_a_long_motion():
 # The robot
 
 
+@pytest.mark.no_cover
 @pytest.mark.parametrize("name", ["strider", "phoenix", "mithi", "freenove"])
 def test_links_are_drawn_at_their_projection(name):
     robot = load_robot(name)

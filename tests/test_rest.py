@@ -115,6 +115,7 @@ def test_near_a_stance_it_rests_on_the_face_below_the_centre_of_mass(seed):
         np.testing.assert_allclose(resting_pose(robot, angles).body.rotation[2], -normals[face], atol=1e-9)
 
 
+@pytest.mark.no_cover
 def test_it_follows_the_steepest_descent():
     """The same way in twenty thousand small steps down the slope of the centre's height, with no idea of contacts."""
     rng = np.random.default_rng(11)
@@ -391,6 +392,7 @@ def test_an_empty_batch():
     assert rest.corners_down.shape == (0, 8)
 
 
+@pytest.mark.no_cover
 @pytest.mark.parametrize(("xp", "shape"), [(jnp, ()), (array_api_strict, ()), (array_api_strict, (2, 3))])
 def test_other_libraries_agree(xp, shape):
     robot = random_hexapod(np.random.default_rng(14))

@@ -73,6 +73,7 @@ def test_it_goes_through_all_states_and_back(name):
     assert not controller.guard.counts
 
 
+@pytest.mark.no_cover
 def test_a_walking_robot_stops_before_it_sits_down_and_walks_on_once_it_stands():
     controller = RobotController(STRIDER)
     assert states_of(controller, Command(twist=(0.05, 0.0, 0.0)), 2.0) == [RobotState.STANDING, RobotState.WALKING]
@@ -117,6 +118,7 @@ def test_a_change_of_state_can_be_turned_back_on_the_way(start, goal, other, mov
     assert not controller.guard.counts
 
 
+@pytest.mark.no_cover
 def test_a_change_of_state_that_is_turned_back_twice_goes_on():
     controller = RobotController(STRIDER, start="lying")
     for _ in range(60):
@@ -193,6 +195,7 @@ def test_it_walks_as_the_walk_controller_does():
     assert output.heading == pytest.approx(walk.place[2])
 
 
+@pytest.mark.no_cover
 def test_what_a_command_leaves_out_holds_also_through_lying_down():
     controller = RobotController(STRIDER)
     controller.step(Command(gait="wave", swing_height=0.02, state="lying"), DT)
@@ -204,6 +207,7 @@ def test_what_a_command_leaves_out_holds_also_through_lying_down():
     assert controller.state is RobotState.WALKING
 
 
+@pytest.mark.no_cover
 def test_a_foot_target_is_put_back_before_the_robot_sits_down_and_does_not_come_again():
     controller = RobotController(STRIDER, Gait.named("wave"))
     point = tuple(controller.output.feet[5] + [0.02, 0.0, 0.04])
@@ -318,6 +322,7 @@ def test_readings_of_the_ground_reach_the_walk_controller():
     assert output.feet[0, 2] < output.feet[2, 2] - 0.01
 
 
+@pytest.mark.no_cover
 def test_a_robot_that_feels_uneven_ground_sits_down_over_all_feet_that_stand():
     controller, plant, states = RobotController(STRIDER), IdealPlant(STRIDER), []
     for leg, height in enumerate((0.01, 0.0, -0.01, 0.01, 0.0, -0.01)):

@@ -577,6 +577,7 @@ def robots(draw):
     )
 
 
+@pytest.mark.no_cover
 @settings(max_examples=60, deadline=None, suppress_health_check=list(HealthCheck))
 @given(robot=robots())
 def test_saving_and_loading_is_exact_to_the_bit(tmp_path_factory, robot):
@@ -760,6 +761,7 @@ KEYS = [
 ]
 
 
+@pytest.mark.no_cover
 @settings(max_examples=200, deadline=None)
 @given(key=st.sampled_from(KEYS), value=ANYTHING)
 def test_any_value_at_any_key_loads_or_is_refused_with_a_reason(key, value):

@@ -104,6 +104,7 @@ def test_orientations_of_tibiae_are_those_of_their_points():
     np.testing.assert_allclose(np.linalg.det(found), 1, atol=1e-12)
 
 
+@pytest.mark.no_cover
 @pytest.mark.parametrize(("name", "gait", "heading"), [("makeyourpet", "wave", math.pi / 2), ("strider", "wave", 0.0)])
 def test_in_physics_the_way_is_that_of_the_plan(name, gait, heading):
     robot = preset(name)

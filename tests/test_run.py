@@ -99,6 +99,7 @@ def test_scenarios_run_on_any_plant():
         run_scenario(scenario_from_text("at 1 s: ground RF 3 mm"), plant=LaggingPlant(STRIDER))
 
 
+@pytest.mark.no_cover
 def test_commands_hold_until_the_next_and_the_run_ends_at_rest():
     commands = [(2.0, Command(state="lying")), (0.5, Command(twist=FORWARD, gait="wave")), (1.5, (0.0, 0.0, 0.0))]
     recording = run(RobotController(STRIDER), IdealPlant(STRIDER), commands, name="down")
@@ -164,6 +165,7 @@ def test_controller_and_plant_are_of_one_robot():
         run(RobotController(STRIDER), other, [])
 
 
+@pytest.mark.no_cover
 def test_a_limitation_that_ends_before_its_command_is_no_unmet_command():
     commands = [(0.0, (2.0, 0.0, 0.0)), (1.0, (0.02, 0.0, 0.0)), (2.0, Command(gait="wave", twist=(0.02, 0.0, 0.0)))]
     recording = run(RobotController(STRIDER), IdealPlant(STRIDER), commands, duration=8.0)

@@ -96,6 +96,7 @@ def test_feet_of_every_robot_give_way_clean_through_the_guard(name):
     assert all(event.kind in ("command", "stage") for event in found.events)
 
 
+@pytest.mark.no_cover
 def test_feet_that_give_way_walk_on_without_a_jump():
     text = "at 0 s: walk 80 mm/s; force RF 2 N; force LM -2 N; at 4 s: stop"
     found = run_scenario(scenario_from_text(text, duration=8.0, admittance=SOFT), robot="strider")
@@ -105,6 +106,7 @@ def test_feet_that_give_way_walk_on_without_a_jump():
     assert found.motion.body.position[:, 2] == pytest.approx(found.motion.body.position[0, 2], abs=6e-3)
 
 
+@pytest.mark.no_cover
 def test_a_foot_gives_way_by_the_force_over_its_stiffness():
     text = "at 0 s: force RF 2 N; force LM -1 N; at 3 s: force RF 0 N; force LM 1e3 N; "
     text += "at 6 s: force LM 0 N; force RF 3.5 N"
@@ -166,6 +168,7 @@ def test_a_foot_velocity_holds_to_the_end_of_reach_and_a_point_ends_it():
     assert foot[-1] == pytest.approx([0.25, -0.2, 0.05], abs=1e-6)
 
 
+@pytest.mark.no_cover
 def test_a_foot_with_a_velocity_is_put_down_before_the_robot_sits_down():
     text = "at 0 s: gait wave; foot_velocity RF vz 20 mm/s; at 5 s: sit; at 6 s: foot_release RF"
     found = run_scenario(scenario_from_text(text, duration=10.0), robot="strider")
@@ -174,6 +177,7 @@ def test_a_foot_with_a_velocity_is_put_down_before_the_robot_sits_down():
     assert found.states[-1] == "lying"
 
 
+@pytest.mark.no_cover
 def test_the_cycle_time_goes_back_to_auto():
     text = "at 0 s: walk 30 mm/s; at 1 s: cycle_time 1.6 s; at 5 s: cycle_time auto; at 10 s: stop"
     found = run_scenario(scenario_from_text(text), robot="strider")
@@ -226,6 +230,7 @@ def test_commands_are_given_at_the_first_tick_at_or_after_their_time():
     assert [event.time for event in found.events] == pytest.approx([0.1, 0.26])
 
 
+@pytest.mark.no_cover
 def test_without_a_duration_it_ends_when_what_was_begun_is_over():
     walking = run_scenario(scenario_from_text("at 1 s: walk 20 mm/s"), robot="strider")
     assert walking.motion.duration == pytest.approx(3.0)
@@ -262,6 +267,7 @@ def test_a_robot_that_can_not_get_up_says_why(monkeypatch):
     assert drive_summary(found)["least_margin"] is None
 
 
+@pytest.mark.no_cover
 def test_it_gets_up_where_it_has_sat_down():
     text = "at 0 s: walk vx 60 mm/s turn 20 deg/s; at 3 s: sit; walk 30 mm/s; at 6 s: stand_up; at 9 s: stop"
     found = run_scenario(scenario_from_text(text), robot="strider")
@@ -357,6 +363,7 @@ def test_a_gait_for_six_legs_is_refused_for_four():
         run_scenario(scenario_from_text("at 2 s: gait ripple", gait="creep"), robot=four)
 
 
+@pytest.mark.no_cover
 def test_loads_of_what_stood():
     found = run_scenario(
         scenario_from_text("at 0 s: stand_up; at 2 s: walk 50 mm/s; at 4 s: sit", start="sitting"), robot="strider"
@@ -435,6 +442,7 @@ def test_there_are_examples():
     assert {path.stem for path in SCENARIOS} >= {"stroll", "gaits", "tilt", "whole-day"}
 
 
+@pytest.mark.no_cover
 def test_the_timeline_shows_every_command_and_phase(tmp_path):
     text = "at 0 s: power_off; stand_up; at 2 s: walk 5 m/s; gait wave; "
     text += "at 3 s: foot_target LM x 0.123456 mm y 200.123456 mm z 40.456 mm"
@@ -449,6 +457,7 @@ def test_the_timeline_shows_every_command_and_phase(tmp_path):
     assert (tmp_path / "timeline.png").stat().st_size > 10_000
 
 
+@pytest.mark.no_cover
 def test_the_timeline_shows_how_high_bearing_feet_are_where_they_may_give_way():
     found = run_scenario(load_scenario(next(path for path in SCENARIOS if path.stem == "soft-foot")))
     figure = plot_timeline(found)

@@ -23,6 +23,7 @@ def play(player, dt):
     return np.array(angles)
 
 
+@pytest.mark.no_cover
 @pytest.mark.parametrize("dt", [0.001, 0.0173, 0.05])
 def test_playback_equals_the_sequence(dt):
     player = SequencePlayer(UP)
@@ -41,6 +42,7 @@ def test_playback_equals_the_sequence(dt):
 ORDERS = st.lists(st.tuples(st.sampled_from(["stop", "resume", "reverse"]), st.integers(1, 40)), min_size=1, max_size=5)
 
 
+@pytest.mark.no_cover
 @settings(max_examples=12)
 @given(ORDERS, st.sampled_from([0.002, 0.004, 0.01]))
 def test_with_stops_and_reversals_it_keeps_its_path_and_joint_limits(orders, dt):

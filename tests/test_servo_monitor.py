@@ -209,6 +209,7 @@ def test_a_joint_that_stands_still_in_a_swing_is_stuck_within_100_ms():
     assert noticed - 0.3 <= 0.1
 
 
+@pytest.mark.no_cover
 def test_the_dead_zone_of_the_machine_decides_how_soon_a_slow_joint_is_stuck():
     noticed = []
     for play in (0.2, 1.2):
@@ -265,6 +266,7 @@ def test_a_missed_tick_is_left_out_and_never_made_up_for():
     assert Pacer(clock).timing.rate == 0.0
 
 
+@pytest.mark.no_cover
 @pytest.mark.parametrize(
     ("name", "kind", "speed"), [("strider", "feetech-sts", 0.08), ("phantomx", "dynamixel-ax", 0.1)]
 )

@@ -100,6 +100,7 @@ class Rig:
         return [number for number in self.ids if self.line.servos[number].torque]
 
 
+@pytest.mark.no_cover
 @pytest.mark.parametrize("kind", BUSES)
 def test_a_robot_walks_on_every_bus_sits_down_and_lets_go(kind):
     rig = Rig(kind)
@@ -135,6 +136,7 @@ FAULTS = {
 }
 
 
+@pytest.mark.no_cover
 @pytest.mark.parametrize("name", FAULTS)
 def test_a_fault_in_the_middle_of_a_walk_ends_it(name):
     cause, kind, joint = FAULTS[name]
@@ -204,6 +206,7 @@ def test_the_telemetry_of_all_servos_is_read_in_80_ms_also_where_one_keeps_its_a
     rig.plant.stop()
 
 
+@pytest.mark.no_cover
 @pytest.mark.parametrize("kind", ["feetech-scs", "lx16a"])
 def test_servos_that_are_asked_one_by_one_are_noticed_to_be_silent_together_or_alone(kind):
     # The supply is gone: 18 servos are not waited for. At first the computer may be late itself.
@@ -229,6 +232,7 @@ def test_every_kind_of_fault_has_a_reaction_and_a_remedy():
     assert all(remedy.endswith(".") for _, remedy in REACTIONS.values())
 
 
+@pytest.mark.no_cover
 def test_a_lost_answer_now_and_then_is_no_fault():
     # As plants open their buses.
     rig = Rig(timeout=0.015)
@@ -237,6 +241,7 @@ def test_a_lost_answer_now_and_then_is_no_fault():
     assert rig.plant.fault is None
 
 
+@pytest.mark.no_cover
 @pytest.mark.parametrize("seed", range(3))
 def test_whatever_comes_in_no_command_leaves_beyond_limits_or_speeds(seed):
     random = np.random.default_rng(seed)
@@ -463,6 +468,7 @@ def test_readings_have_what_every_servo_told():
     rig.plant.stop()
 
 
+@pytest.mark.no_cover
 def test_a_process_that_is_kept_from_running_does_not_take_servos_for_silent():
     rig = Rig()
     rig.plant.start(rig.controller.output)

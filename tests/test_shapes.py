@@ -181,6 +181,7 @@ def test_every_array_in_a_signature_has_a_shape():
     assert bare == []
 
 
+@pytest.mark.no_cover
 def test_jaxtyping_is_imported_for_type_checkers_only():
     for name, tree in TREES.items():
         guarded = {

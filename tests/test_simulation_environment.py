@@ -218,6 +218,7 @@ def test_what_becomes_unstable_has_fallen(joint):
     assert joint.observation_space.contains(observation)
 
 
+@pytest.mark.no_cover
 def test_the_scripted_policy_and_no_residual_follow_commands_on_flat_ground():
     options = {"sensors": "blind", "max_episode_steps": 150, "commands": CommandSampler(standing=0.0)}
     plain = gymnasium.make(WALK, **options)

@@ -284,14 +284,17 @@ def test_the_pages_rows_are_reproduced(servos, gait):
     assert_reproduced(docs_module("how_true").row(STRIDER, gait, servos), table_on_the_page(servos))
 
 
+@pytest.mark.no_cover
 def test_the_pages_live_walk_is_reproduced():
     assert_reproduced(docs_module("how_true").live_row(STRIDER, "tripod"), table_on_the_page("live"))
 
 
+@pytest.mark.no_cover
 def test_the_pages_live_walk_on_soft_servos_is_reproduced():
     assert_reproduced(docs_module("how_true").soft_row(STRIDER, "tripod"), table_on_the_page("soft"))
 
 
+@pytest.mark.no_cover
 @pytest.mark.parametrize(
     ("robot", "fault"),
     [("strider", "one servo dead (middle left femur)"), ("phantomx", "push of half the weight for 0.2 s")],
@@ -300,6 +303,7 @@ def test_the_pages_faults_are_reproduced(robot, fault):
     assert_reproduced(docs_module("faults").fault_row(robot, fault), table_on_the_page("faults"))
 
 
+@pytest.mark.no_cover
 def test_the_pages_changes_of_state_are_reproduced():
     assert_reproduced(docs_module("faults").state_row("strider", "catalogue"), table_on_the_page("states"))
 

@@ -23,6 +23,7 @@ def is_carried_with(found, servos, *, rule, safety_factor, supply=None):
     return all(verdict.is_sufficient(rule) for verdict in joint_verdicts(loads, safety_factor=safety_factor))
 
 
+@pytest.mark.no_cover
 @pytest.mark.parametrize(
     ("name", "gait", "factor", "rule"),
     [
@@ -110,6 +111,7 @@ def test_servos_of_another_voltage_are_excluded():
     assert "DS3218" not in sizing.excluded
 
 
+@pytest.mark.no_cover
 def test_verdict_on_the_current_servos():
     found = sample_loads("strider", "wave")
     sizing = size_servos(found.robot, found, safety_factor=2.0)

@@ -88,6 +88,7 @@ def test_without_torques_or_masses_and_without_a_way_nothing_is_found():
     assert massless.push == 0.0
 
 
+@pytest.mark.no_cover
 def test_a_robot_whose_body_meets_a_pole_says_so_stops_and_walks_back():
     plant = SimulatedPlant(STRIDER, terrain=Pole())
     controller, dt, said, way = tarsus.RobotController(STRIDER), 0.01, set(), []

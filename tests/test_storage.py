@@ -171,6 +171,7 @@ def test_inconsistent_contents_are_refused(tmp_path):
         load_motion(path)
 
 
+@pytest.mark.no_cover
 def test_a_damaged_file_is_refused_whatever_is_damaged(tmp_path):
     """Zip, deflate, NumPy's headers and JSON fail in ways of their own: all come out as one error, or do no harm."""
     motion, path = walk(rate=10), tmp_path / "walk.npz"

@@ -123,6 +123,7 @@ def short_walk(monkeypatch):
     monkeypatch.setattr(trial, "_WALK_TIME", 0.3)
 
 
+@pytest.mark.no_cover
 def test_a_machine_is_brought_up_from_a_page(tmp_path):
     page = Page(tmp_path)
     assert page.asked("hello", "welcome", state=None)["hardware"] == {"missing": None}
@@ -143,6 +144,7 @@ def test_a_machine_is_brought_up_from_a_page(tmp_path):
     assert page.asked.session.frame(0.1) is None
 
 
+@pytest.mark.no_cover
 def test_it_is_left_and_resumed_and_wrong_answers_do_no_harm(tmp_path):
     page = Page(tmp_path)
     page.begin()

@@ -23,6 +23,7 @@ STRIDER = tarsus.load_robot("strider")
 FORWARD = {"velocity_mm_s": [50, 0], "turn_deg_s": 0}
 
 
+@pytest.mark.no_cover
 def test_the_view_drive_commands_the_servos_and_shows_what_they_measure():
     machine = Machine()
     asked = machine.visitor()
@@ -49,6 +50,7 @@ def test_the_view_drive_commands_the_servos_and_shows_what_they_measure():
     assert (machine_part.problems, machine_part.stopped) == ([], False)
 
 
+@pytest.mark.no_cover
 @pytest.mark.parametrize("leaves", [True, False])
 def test_the_robot_stops_when_its_driver_leaves_or_is_not_heard(leaves):
     machine = Machine()
@@ -116,6 +118,7 @@ def test_a_command_that_the_controller_refuses_does_not_end_the_run(command, mes
     assert (machine.given[-1][1].gait, machine.given[-1][1].twist[0]) == (None, 0.05)
 
 
+@pytest.mark.no_cover
 def test_a_visitor_ends_the_run_when_the_robot_stands():
     machine = Machine()
     asked = machine.visitor()

@@ -377,6 +377,7 @@ def test_load_options_out_of_range_are_rejected(ask, loading):
     assert ask.error("loads", loads=loading)["kind"] == "input"
 
 
+@pytest.mark.no_cover
 def test_servos_agree_with_size_servos(ask):
     ask.all(
         "walk",

@@ -530,6 +530,7 @@ def digest(seed):
     return hashlib.sha256(trace.angles.tobytes()).hexdigest()
 
 
+@pytest.mark.no_cover
 def test_the_same_stream_gives_the_same_angles_to_the_bit():
     script = "import test_walk_controller; print(test_walk_controller.digest(5))"
     command = [sys.executable, "-c", script]

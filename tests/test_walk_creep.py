@@ -204,6 +204,7 @@ def test_in_physics_a_quadruped_keeps_level_and_goes_where_it_is_told():
     np.testing.assert_allclose(plant.state.body.position[0], planned, rtol=0.04)
 
 
+@pytest.mark.no_cover
 def test_the_studio_drives_a_quadruped_in_its_own_gait():
     asked = Asked()
     assert asked("document", "robot", document=QUADRUPED)["gaits"] == ["creep"]

@@ -35,6 +35,7 @@ def in_heading_frame(controller, leg):
     return np.array([np.cos(yaw) * off[0] + np.sin(yaw) * off[1], np.cos(yaw) * off[1] - np.sin(yaw) * off[0], off[2]])
 
 
+@pytest.mark.no_cover
 def test_a_foot_follows_its_target_while_the_other_legs_walk():
     controller = WalkController(load_robot("strider"), Gait.named("wave"))
     point = (0.25, 0.2, 0.08)
@@ -55,6 +56,7 @@ def test_a_foot_follows_its_target_while_the_other_legs_walk():
     np.testing.assert_allclose(in_heading_frame(controller, 0), in_heading_frame(fresh, 0), atol=1e-5)
 
 
+@pytest.mark.no_cover
 def test_a_point_holds_until_there_is_another():
     controller = WalkController(load_robot("strider"), Gait.named("wave"))
     walk(controller, Command(foot_targets={0: (0.25, 0.2, 0.08)}), 14)
@@ -81,6 +83,7 @@ def test_a_leg_that_bears_the_robot_is_refused_with_the_margin():
     assert controller.twist[0] > 0.03
 
 
+@pytest.mark.no_cover
 def test_out_of_reach_it_goes_as_far_as_it_reaches():
     controller = WalkController(load_robot("strider"), Gait.named("wave"))
     walk(controller, Command(foot_targets={0: (0.25, 0.2, 0.08)}), 8)
@@ -97,6 +100,7 @@ def test_there_is_no_such_leg(leg):
         controller.step(Command(foot_targets={leg: (0.2, 0.2, 0.1)}), DT)
 
 
+@pytest.mark.no_cover
 def test_sway_moves_the_body_with_the_steps_and_fades():
     controller = WalkController(load_robot("strider"), Gait.named("tripod"))
     command = Command(twist=(0.05, 0, 0), sway=(0.001, 0.004, 0.003, 0.01, 0.005, 0.01))
@@ -135,6 +139,7 @@ def test_a_foot_target_reaches_the_edge_of_the_workspace_wherever_the_body_sways
     trace.run(Command(twist=twist), 8, 0.02).assert_sound()
 
 
+@pytest.mark.no_cover
 def test_a_sway_stops_and_changes_its_pace_without_a_jump():
     controller = WalkController(load_robot("phantomx-mk2"), Gait.named("tripod"))
     trace, twist = Trace(controller), 0.5 * controller.top_speed((1, 0, 0)) * np.array([1, 0, 0])
@@ -144,6 +149,7 @@ def test_a_sway_stops_and_changes_its_pace_without_a_jump():
     trace.run(Command(twist=0.5 * twist, gait="wave"), 4, 0.002).assert_sound()
 
 
+@pytest.mark.no_cover
 def test_one_foot_target_replaces_another():
     controller = WalkController(load_robot("strider"), Gait.named("wave"))
     walk(controller, Command(twist=(0.005, 0, 0), foot_targets={0: (0.2, 0.15, 0.06)}), 14)

@@ -51,6 +51,7 @@ def test_a_transition_that_will_be_met_is_no_limitation():
     np.testing.assert_allclose(controller.body.position[2], 0.14, atol=1e-3)
 
 
+@pytest.mark.no_cover
 def test_each_infeasible_quantity_has_its_own_limitation():
     controller = controller_of()
     run(controller, Command(stance_width=0.3), 20)

@@ -36,6 +36,7 @@ def flat(x):
     return 0.0 * x
 
 
+@pytest.mark.no_cover
 @pytest.mark.parametrize("gait", GAITS)
 def test_on_flat_ground_it_walks_as_far_as_without_readings(gait):
     felt, blind = (WalkController(preset("strider"), Gait.named(gait)) for _ in range(2))
@@ -49,6 +50,7 @@ def test_on_flat_ground_it_walks_as_far_as_without_readings(gait):
     assert felt.limitations == ()
 
 
+@pytest.mark.no_cover
 @pytest.mark.parametrize("name", ["phantomx", "makeyourpet"])
 def test_in_physics_the_top_speed_is_that_without_readings(name):
     robot, ways, dt = preset(name), [], 0.01
@@ -79,6 +81,7 @@ def test_all_robots_walk_and_stop_on_ground_that_they_feel(name):
     assert not [found for found in trace.broken(flat=False) if "joint" in found]
 
 
+@pytest.mark.no_cover
 @pytest.mark.parametrize("slope", [0.12, -0.12])
 def test_the_body_keeps_its_height_over_a_slope(slope):
     controller = WalkController(preset("strider"), Gait.named("tripod"))
@@ -195,6 +198,7 @@ def in_physics(ground, *, sensors="ideal", seconds=6.0, speed=0.12, name="stride
     return plant.state.body.position[0] / (speed * seconds), np.degrees(np.sqrt(np.mean(np.square(tilts))))
 
 
+@pytest.mark.no_cover
 def test_over_blocks_it_is_faster_and_calmer_than_a_walk_that_feels_nothing():
     ground = terrain.Blocks(rise=0.04, clear=0.35, seed=4)
     way, tilt = in_physics(ground)
