@@ -1,5 +1,6 @@
 """The loop of controller and plant: every kind of plant and of command source runs in it, and is stopped at its end."""
 
+import dataclasses
 import math
 
 import numpy as np
@@ -7,6 +8,8 @@ import pytest
 
 import tarsus
 from tarsus.control.command import Command
+from tarsus.control.limitation import Limitation, LimitationKind
+from tarsus.control.loop.recorder import Recorder
 from tarsus.control.loop.run import CommandSource, TimedCommands, run
 from tarsus.control.plant import IdealPlant, Plant
 from tarsus.control.readings import SensorReadings
@@ -99,7 +102,6 @@ def test_scenarios_run_on_any_plant():
         run_scenario(scenario_from_text("at 1 s: ground RF 3 mm"), plant=LaggingPlant(STRIDER))
 
 
-@pytest.mark.no_cover
 def test_commands_hold_until_the_next_and_the_run_ends_at_rest():
     commands = [(2.0, Command(state="lying")), (0.5, Command(twist=FORWARD, gait="wave")), (1.5, (0.0, 0.0, 0.0))]
     recording = run(RobotController(STRIDER), IdealPlant(STRIDER), commands, name="down")
@@ -165,7 +167,6 @@ def test_controller_and_plant_are_of_one_robot():
         run(RobotController(STRIDER), other, [])
 
 
-@pytest.mark.no_cover
 def test_a_limitation_that_ends_before_its_command_is_no_unmet_command():
     commands = [(0.0, (2.0, 0.0, 0.0)), (1.0, (0.02, 0.0, 0.0)), (2.0, Command(gait="wave", twist=(0.02, 0.0, 0.0)))]
     recording = run(RobotController(STRIDER), IdealPlant(STRIDER), commands, duration=8.0)
@@ -174,3 +175,17 @@ def test_a_limitation_that_ends_before_its_command_is_no_unmet_command():
     assert (unmet.time, unmet.until) == pytest.approx((0.01, 1.0), abs=0.011)
     assert unmet.limitation.granted < 1
     assert recording.problems == (f"not met in full, {unmet.text()}",)
+
+
+def test_a_command_that_changes_ends_what_was_not_met_of_it_and_nothing_else():
+    controller = RobotController(STRIDER)
+    recorder = Recorder(controller)
+    found = (
+        Limitation(kind=LimitationKind.READINGS, cause="attitude: not finite numbers"),
+        Limitation(kind=LimitationKind.TWIST, cause="reach", asked=1.0, granted=0.5),
+    )
+    recorder.command(Command(twist=FORWARD))
+    recorder.tick(0.01, dataclasses.replace(controller.output, limitations=found), SensorReadings())
+    assert [unmet.limitation for unmet in recorder._unmet.values()] == [found[0]]
+    recorder.command(Command(twist=(0.0, 0.0, 0.0)))
+    assert [unmet.limitation for unmet in recorder._unmet.values()] == list(found)
