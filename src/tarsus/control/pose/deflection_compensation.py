@@ -118,13 +118,11 @@ class DeflectionCompensation:
     ) -> None:
         """Learn the softness: how far the femurs have turned, over how far the servos of the file would be bent."""
         product = square = 0.0
-        for leg, (angles, (coxa, femur, _), expected) in enumerate(
-            zip(valid.joint_angles or (), joints, turned, strict=False)
-        ):
+        for leg, angles in enumerate(valid.joint_angles or ()):
             force = valid.forces[leg] if valid.forces else None
             if not angles or (valid.forces and not force):
                 continue
-            bends = expected
+            (coxa, femur, _), bends = joints[leg], turned[leg]
             if force:
                 # The torque that bends the femur is that of the whole force: feet lean against each other.
                 _, _, yaw, _, _, _, femur_yields, _ = self._legs[leg]

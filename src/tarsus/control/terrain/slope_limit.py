@@ -36,14 +36,13 @@ class SlopeLimit:
         The slope under the feet; where motion is refused, the steepest one since then [rad].
     refuses : bool
         Whether the motion is refused.
-    tilts : bool
-        Whether the body is too far off the attitude to keep, at the end of the legs' reach.
     """
 
     def __init__(self, friction: float) -> None:
         self.steepest = math.atan(max(friction - _PRELOAD, 0.0))
-        self.slope, self.refuses, self.tilts = 0.0, False, False
-        self._refused = self._off = 0.0
+        self.slope, self.refuses = 0.0, False
+        # Whether the body is too far off its attitude, and how far it is [rad].
+        self._tilts, self._off, self._refused = False, 0.0, 0.0
 
     def step(self, level: FootPlane, velocity: complex, off: float = 0.0) -> None:
         """Decide on a motion.
@@ -59,10 +58,10 @@ class SlopeLimit:
         """
         slope = math.atan(math.hypot(level.slope_x, level.slope_y))
         rises = velocity.real * level.slope_x + velocity.imag * level.slope_y
-        self._off, self.tilts = off, slope > _SLOPES and off > (_LEVELLED if self.tilts else _OFF)
-        if slope < self.steepest - _HYSTERESIS and not self.tilts:
+        self._off, self._tilts = off, slope > _SLOPES and off > (_LEVELLED if self._tilts else _OFF)
+        if slope < self.steepest - _HYSTERESIS and not self._tilts:
             self._refused = 0.0
-        elif (slope > self.steepest or self.tilts) and not self._refused:
+        elif (slope > self.steepest or self._tilts) and not self._refused:
             self._refused = rises
         self.slope = max(self.slope, slope) if self._refused else slope
         # The way back stays open.
@@ -71,7 +70,7 @@ class SlopeLimit:
     @property
     def reason(self) -> str:
         """Why motion is refused."""
-        if self.tilts:
+        if self._tilts:
             off, most = math.degrees(self._off), math.degrees(_OFF)
             return f"a slope on which legs do not keep the body level: off by {off:.0f} deg, at most {most:.0f} deg"
         steepest = f"the steepest one for their friction is {math.degrees(self.steepest):.0f} deg"
