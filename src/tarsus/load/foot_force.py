@@ -144,13 +144,17 @@ def balanced_forces(
     count = sum(contacts)
     if not count:
         return (0.0,) * len(feet)
-    down = [(foot[0], foot[1], part) for foot, part in zip(feet, contacts, strict=True) if part]
-    mean_x, mean_y = sum(part * x for x, _, part in down) / count, sum(part * y for _, y, part in down) / count
-    moments = PlanarMoments(
-        xx=sum(part * (x - mean_x) ** 2 for x, _, part in down),
-        xy=sum(part * (x - mean_x) * (y - mean_y) for x, y, part in down),
-        yy=sum(part * (y - mean_y) ** 2 for _, y, part in down),
-    )
+    sum_x = sum_y = xx = xy = yy = 0.0
+    for foot, part in zip(feet, contacts, strict=True):
+        sum_x += part * foot[0]
+        sum_y += part * foot[1]
+    mean_x, mean_y = sum_x / count, sum_y / count
+    for foot, part in zip(feet, contacts, strict=True):
+        x, y = foot[0] - mean_x, foot[1] - mean_y
+        xx += part * x * x
+        xy += part * x * y
+        yy += part * y * y
+    moments = PlanarMoments(xx=xx, xy=xy, yy=yy)
     off_x, off_y = weight * (centre[0] - mean_x), weight * (centre[1] - mean_y)
     a = b = 0.0
     if moments.span_area(_LEAST_SPREAD):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import cmath
 import math
 from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING
@@ -137,8 +138,8 @@ class DeflectionCompensation:
         """Return where the feet are in B, x and y [m]."""
         feet: list[tuple[float, float]] = []
         for (x, y, yaw, length, *_), (coxa, *_), (_, _, to_hip, _) in zip(self._legs, joints, arms, strict=True):
-            out = length + to_hip
-            feet.append((x + out * math.cos(yaw + coxa), y + out * math.sin(yaw + coxa)))
+            out = cmath.rect(length + to_hip, yaw + coxa)
+            feet.append((x + out.real, y + out.imag))
         return feet
 
     def _needed_friction(self, commanded: Float[np.ndarray, "legs 3"]) -> float:
@@ -154,5 +155,6 @@ class DeflectionCompensation:
 
 def _lever_arms(femur: float, tibia: float, turned: float, bent: float) -> tuple[float, float, float, float]:
     """Return how far out and below the foot is from the knee, and from the femur axis [m]."""
-    to_knee, below_knee = tibia * math.cos(turned + bent), -tibia * math.sin(turned + bent)
-    return to_knee, below_knee, to_knee + femur * math.cos(turned), below_knee - femur * math.sin(turned)
+    knee = cmath.rect(tibia, turned + bent)
+    hip = knee + cmath.rect(femur, turned)
+    return knee.real, -knee.imag, hip.real, -hip.imag

@@ -111,9 +111,6 @@ class JointMonitor:
             return
         since, self._since = self._since, 0.0
         self._look(measured, commanded, since, torques, contacts)
-        if self._evidence is not None:
-            for _, leg, joint in np.argwhere(self._evidence > _FAILED_AFTER).tolist():
-                self.failed.setdefault(leg, joint)
 
     def _look(
         self,
@@ -129,25 +126,30 @@ class JointMonitor:
         if self._evidence is not None:
             self._evidence *= 0.5 ** (dt / _MEMORY)
         # No joint is further from all recent commands than from the last one.
-        most = _ERROR if self._evidence is None else _IDLE_ERROR
-        if stuck is None and _follow(measured, commanded, most):
+        joints = commanded.tolist()
+        off = _joints_off(measured, joints, _ERROR if self._evidence is None else _IDLE_ERROR)
+        if stuck is None and not off:
             return
         if self._evidence is None:
-            self._evidence = np.zeros((2, *commanded.shape))
-        before, found = _array(last), _array(measured)
-        recent = np.array([angles for _, angles in self._commands])
-        over = found - recent.max(axis=0)
-        error = np.fmax(np.fmax(over, recent.min(axis=0) - found), 0.0)
-        moves = (found - before) * np.sign(commanded - found) > _MOVES * dt
-        for leg, joint in np.argwhere(error > _IDLE_ERROR).tolist():
+            self._evidence, off = np.zeros((2, *commanded.shape)), _joints_off(measured, joints, _IDLE_ERROR)
+        for leg, joint, now in off:
+            recent = [float(angles[leg, joint]) for _, angles in self._commands]
+            over, error = now - max(recent), max(now - max(recent), min(recent) - now)
+            if error <= _IDLE_ERROR:
+                continue
+            before = last[leg]
+            towards = math.copysign(1.0, joints[leg][joint] - now)
+            moves = before is not None and (now - before[joint]) * towards > _MOVES * dt
             torque = self._torque(torques, leg, joint)
-            idle = torque < _IDLE and not moves[leg, joint]
-            gives_way = joint == _FEMUR and bool(over[leg, joint] > _GIVES_WAY)
+            idle = torque < _IDLE and not moves
+            gives_way = joint == _FEMUR and over > _GIVES_WAY
             stalled = not idle and contacts is not None and bool(contacts[leg])
-            weight = _weight(float(error[leg, joint]), torque, idle=idle, gives_way=gives_way)
+            weight = _weight(error, torque, idle=idle, gives_way=gives_way)
             self._evidence[0, leg, joint] += dt * weight * (_STALLED if stalled else 1.0)
         if stuck is not None:
             self._evidence[1] += _ONCE * stuck
+        for _, leg, joint in np.argwhere(self._evidence > _FAILED_AFTER).tolist():
+            self.failed.setdefault(leg, joint)
 
     def _torque(self, torques: _Measured, leg: int, joint: int) -> float:
         """Return the measured torque of a joint over the stall torque of its servo; NaN where it is unknown."""
@@ -182,10 +184,16 @@ def _weight(error: float, torque: float, *, idle: bool, gives_way: bool) -> floa
     return min((error / bound) ** 2, most)
 
 
-def _follow(measured: Sequence[Vector | None], commanded: Float[np.ndarray, "legs 3"], most: float) -> bool:
-    """Return whether no joint that is measured is off by more than this."""
-    legs = ((found, angles) for found, angles in zip(measured, commanded.tolist(), strict=True) if found is not None)
-    return all(abs(now - wanted) <= most for found, angles in legs for now, wanted in zip(found, angles, strict=True))
+def _joints_off(
+    measured: Sequence[Vector | None], commanded: Sequence[Sequence[float]], most: float
+) -> list[tuple[int, int, float]]:
+    """Return the joints that are measured and off by more than this: leg, joint and angle."""
+    return [
+        (leg, joint, now)
+        for leg, (found, angles) in enumerate(zip(measured, commanded, strict=True))
+        for joint, now in enumerate(found or ())
+        if abs(now - angles[joint]) > most
+    ]
 
 
 def _array(values: Sequence[Vector | None]) -> Float[np.ndarray, "legs 3"]:

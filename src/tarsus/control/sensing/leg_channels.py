@@ -6,7 +6,7 @@ import math
 import sys
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
-from operator import le, sub
+from operator import itemgetter, le, sub
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -119,23 +119,24 @@ class VectorChannel(_LegChannel):
         ranges = np.tile(_ANY_FINITE, (len(legs), 1, 1)) if bounds is None else bounds
         self._bounds = ranges.tolist()
         self._low, self._high = (ranges[..., side].ravel().tolist() for side in (0, 1))
-        self._unbounded, self._beyond, self._accept_z = bounds is None, beyond, accept_z
+        # A norm up to which all numbers are plausible, and one up to which none is too great.
+        self._small, self._below = float(np.abs(ranges).min()), min(self._high)
+        self._beyond, self._accept_z = beyond, accept_z
+        self._by_leg = itemgetter(*(slice(leg, leg + 3) for leg in range(0, 3 * len(legs), 3)))
 
     def _plain(self, value: Shaped[np.ndarray, "..."]) -> tuple[Vector, ...] | None:
         if value.dtype is not _FLOAT:
             return None
         numbers: list[float] = value.ravel().tolist()
-        if not self._contains(numbers):
-            return None
-        rest = iter(numbers)
-        return tuple(zip(rest, rest, rest, strict=False))
+        plain: tuple[Vector, ...] | None = self._by_leg(tuple(numbers)) if self._contains(numbers) else None
+        return plain
 
     def _contains(self, numbers: list[float]) -> bool:
         """Return whether the numbers of all legs are plausible."""
-        if self._unbounded:
-            # Of a finite sum all parts are finite.
-            return math.isfinite(sum(numbers))
-        return all(map(le, self._low, numbers)) and all(map(le, numbers, self._high))
+        norm = math.hypot(*numbers)
+        if norm <= self._small:
+            return True
+        return all(map(le, self._low, numbers)) and (norm <= self._below or all(map(le, numbers, self._high)))
 
     def _read_leg(self, leg: int, value: Any) -> Vector | str:
         alone = as_number(value) if self._accept_z and type(value) is not list else math.nan

@@ -78,10 +78,10 @@ def as_vector(value: Any) -> tuple[float, float, float] | None:
     value : anything
         Expected: a list, tuple or array of three numbers.
     """
-    if type(value) is list and len(value) == 3:  # the common case, without a copy
-        x, y, z = value
-        if type(x) is type(y) is type(z) is float:
-            return x, y, z
-        return as_number(x), as_number(y), as_number(z)
-    parts = as_items(value, (3,))
-    return None if parts is None else (as_number(parts[0]), as_number(parts[1]), as_number(parts[2]))
+    parts = value if type(value) is list and len(value) == 3 else as_items(value, (3,))
+    if parts is None:
+        return None
+    x, y, z = parts
+    if type(x) is type(y) is type(z) is float:  # the common case
+        return x, y, z
+    return as_number(x), as_number(y), as_number(z)

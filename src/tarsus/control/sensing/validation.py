@@ -9,6 +9,7 @@ import numpy as np
 
 from tarsus.control.readings import CHANNELS, SensorReadings, ValidReadings
 from tarsus.control.sensing.body_channels import AngularRateChannel, AttitudeChannel
+from tarsus.control.sensing.channel import Channel
 from tarsus.control.sensing.leg_channels import ContactChannel, JointAngleChannel, VectorChannel
 from tarsus.control.sensing.plain_values import as_number
 from tarsus.gait.ground_heights import GroundHeights
@@ -32,6 +33,7 @@ _PULL = 0.25
 _FINITE_CHANNELS = ("joint_speeds", "currents", "temperatures", "voltages")
 
 _NO_READINGS = ValidReadings()
+_VALUES = attrgetter(*CHANNELS)
 _BAD_AGE = "age is not a number >= 0 s"
 
 
@@ -51,7 +53,7 @@ class ReadingsValidator:
 
     def __init__(self, robot: Robot) -> None:
         legs, fastest = robot.leg_codes, float(joint_limits(robot).speed.max())
-        self._channels: dict[str, Any] = {
+        channels: dict[str, Any] = {
             "contacts": ContactChannel(legs),
             "attitude": AttitudeChannel(),
             "joint_angles": JointAngleChannel(legs, np.asarray(robot.limits), fastest),
@@ -61,7 +63,8 @@ class ReadingsValidator:
             "angular_rates": AngularRateChannel(),
             "ground": _GroundChannel(),
         }
-        self._values = attrgetter(*self._channels)
+        self._channels: list[Any] = [channels[name] for name in CHANNELS]
+        self._timed: list[Channel] = [channels["attitude"], channels["joint_angles"]]
 
     def validate(self, readings: SensorReadings | None, dt: float) -> ValidReadings:
         """Return the readings that pass, and the reasons of all rejections.
@@ -73,31 +76,41 @@ class ReadingsValidator:
         dt : float
             Time since the last call [s].
         """
-        self._channels["attitude"].elapse(dt)
-        self._channels["joint_angles"].elapse(dt)
+        for channel in self._timed:
+            channel.elapse(dt)
         if readings is None:
             return _NO_READINGS
-        rejected: list[str] = []
-        accepted: dict[str, Any] = {}
         problem, ages = _channel_ages(readings)
         if problem:
-            for channel in self._channels.values():
+            for channel in self._channels:
                 channel.reset()
             return ValidReadings(rejected=(problem,))
-        for (name, channel), value in zip(self._channels.items(), self._values(readings), strict=True):
-            if value is None:
-                continue
-            if ages and (stale := _stale(name, ages.get(name, 0.0))):
-                rejected.append(stale)
-                channel.reset()
-            else:
-                accepted[name] = channel.read(value, rejected)
-        # An age that is no number is none.
-        contact_age = ground_age = max(0.0, as_number(readings.age))
+        rejected: list[str] = []
+        values = _VALUES(readings)
         if ages:
-            tells = next((name for name in ("contacts", "forces") if name in accepted), "joint_angles")
-            contact_age, ground_age = (max(0.0, as_number(ages.get(name, 0.0))) for name in (tells, "ground"))
-        return ValidReadings(**accepted, contact_age=contact_age, ground_age=ground_age, rejected=tuple(rejected))
+            values = self._fresh(values, ages, rejected)
+        found = [
+            value if value is None else channel.read(value, rejected)
+            for channel, value in zip(self._channels, values, strict=True)
+        ]
+        if not ages:
+            # An age that is no number is none.
+            age = max(0.0, as_number(readings.age))
+            return ValidReadings._make((*found, age, age, tuple(rejected)))
+        fresh = [name for name, value in zip(CHANNELS, values, strict=True) if value is not None]
+        tells = next((name for name in ("contacts", "forces") if name in fresh), "joint_angles")
+        contact_age, ground_age = (max(0.0, as_number(ages.get(name, 0.0))) for name in (tells, "ground"))
+        return ValidReadings._make((*found, ground_age, contact_age, tuple(rejected)))
+
+    def _fresh(self, values: tuple[Any, ...], ages: dict[str, Any], rejected: list[str]) -> tuple[Any, ...]:
+        """Return the readings, None for those that are too old."""
+        fresh = list(values)
+        for index, (name, value) in enumerate(zip(CHANNELS, values, strict=True)):
+            if value is not None and (stale := _stale(name, ages.get(name, 0.0))):
+                rejected.append(stale)
+                self._channels[index].reset()
+                fresh[index] = None
+        return tuple(fresh)
 
 
 class _GroundChannel:

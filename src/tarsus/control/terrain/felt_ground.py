@@ -179,7 +179,8 @@ class FeltGround:
         self._still = not any(twist.tolist()) or (self.body.slope.refuses and self.support.halts)
         self._given, self._rests = (excluded, standing), self._still and not self.missing.refuses
         if kept and self._given == before and (standing or not self._next_lift.is_due(timing, state, dt)):
-            return kept._replace(climb=self.body.rates.climb, turn=self.body.rates.turn)
+            self._inputs = kept = kept.moved_by(self.body.rates.climb, self.body.rates.turn)
+            return kept
         due, turn = None if standing else timing.due(state, dt), cmath.exp(-1j * state.yaw)
         dt, self._idle = self._idle, 0.0
         steps = [leg not in excluded for leg in range(len(state.foot))]
