@@ -19,7 +19,7 @@ jax.config.update("jax_enable_x64", True)
 jax.config.update("jax_disable_most_optimizations", True)
 
 settings.register_profile(
-    "tarsus", deadline=None, derandomize=True, max_examples=40, suppress_health_check=[HealthCheck.too_slow]
+    "tarsus", deadline=None, derandomize=True, max_examples=24, suppress_health_check=[HealthCheck.too_slow]
 )
 settings.load_profile("tarsus")
 

@@ -9,6 +9,8 @@ from tarsus.robot.robot import Robot
 
 PRESETS = list_robots()
 HEXAPOD_GAITS = ("tripod", "tetrapod", "ripple", "wave")
+# Every preset with one gait, every gait with two presets.
+ROBOTS_AND_GAITS = [(name, HEXAPOD_GAITS[number % len(HEXAPOD_GAITS)]) for number, name in enumerate(PRESETS)]
 
 
 @functools.cache

@@ -11,7 +11,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from gait_robots import HEXAPOD_GAITS, PRESETS, preset, ring
+from gait_robots import PRESETS, ROBOTS_AND_GAITS, preset, ring
 from sample_guard import ALL_STANCE, INVALID_ANGLES, NAN, TICK, check_bounds, run, standing, walk
 from sample_robots import random_hexapod
 from tarsus.control.safety import Guard, GuardBounds, GuardState, InterventionKind
@@ -22,8 +22,7 @@ from tarsus.kinematics.pose import Pose
 
 
 @pytest.mark.lengthy
-@pytest.mark.parametrize("gait", HEXAPOD_GAITS)
-@pytest.mark.parametrize("name", PRESETS)
+@pytest.mark.parametrize(("name", "gait"), ROBOTS_AND_GAITS)
 def test_a_valid_walk_passes_unchanged(name, gait):
     motion = walk(name, gait)
     guard = Guard(preset(name))
@@ -129,7 +128,7 @@ BODIES = (None, Pose(), Pose.from_rpy(0.1, 0.2, 3.0), Pose.from_rpy(0.0, [0.1, 0
 
 
 @pytest.mark.no_cover
-@settings(max_examples=150)
+@settings(max_examples=80)
 @given(SEGMENTS, st.sampled_from(["hold", "sit"]), st.sampled_from(["near", "reset"]), st.sampled_from(PRESETS))
 def test_the_output_keeps_all_bounds_for_any_input(segments, policy, recover, name):
     motion = walk(name)

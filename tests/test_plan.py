@@ -97,8 +97,8 @@ def test_the_default_walk_of_every_preset_is_possible(robot):
 
 
 @pytest.mark.lengthy
-@pytest.mark.parametrize("cycle_time", [0.37, 0.5, 1.0, 1.37])
-@pytest.mark.parametrize("rate", [100.0, 97.0, 50.0, 100 / 3, 20.0])
+@pytest.mark.parametrize("cycle_time", [0.37, 1.0])
+@pytest.mark.parametrize("rate", [100.0, 97.0, 100 / 3])
 @pytest.mark.parametrize("name", HEXAPOD_GAITS)
 def test_the_number_of_feet_on_the_ground_does_not_depend_on_the_rate(name, rate, cycle_time):
     gait, path = Gait.named(name), straight_path(0.25)

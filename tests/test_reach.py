@@ -114,7 +114,7 @@ def test_below_ground_agrees_with_the_points(seed):
     assert np.array_equal(solution.reach[sure & agree], expected[sure & agree])
 
 
-@pytest.mark.parametrize("seed", range(10))
+@pytest.mark.parametrize("seed", range(4))
 def test_the_quick_bound_is_conservative(seed):
     """What is surely above by the bound is above by the points, for mounts above B's origin and steep tilts too."""
     rng = np.random.default_rng(seed)

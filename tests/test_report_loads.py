@@ -55,8 +55,16 @@ def summary_of(found):
     return loads_summary(found, supply_load(found))
 
 
-@pytest.mark.parametrize("plot", PLOTS)
-@pytest.mark.parametrize("found", [sample_loads, bare, speedless, lambda: sample_loads("burnt-5kg")])
+@pytest.mark.parametrize(
+    ("plot", "found"),
+    [
+        (plot_torques, sample_loads),
+        (plot_torques, bare),
+        (plot_torques, lambda: sample_loads("burnt-5kg")),
+        (plot_torque_speed, sample_loads),
+        (plot_torque_speed, speedless),
+    ],
+)
 def test_figures_fit_and_axes_have_units(plot, found):
     figure = plot(found())
     figure.canvas.draw()

@@ -130,7 +130,7 @@ def test_a_change_of_state_that_is_turned_back_twice_goes_on():
 
 
 @pytest.mark.lengthy
-@pytest.mark.parametrize("seed", range(8))
+@pytest.mark.parametrize("seed", range(3))
 def test_whatever_is_commanded_only_allowed_transitions_happen_and_the_guard_does_nothing(seed):
     rng = np.random.default_rng(seed)
     controller = RobotController(

@@ -578,7 +578,7 @@ def robots(draw):
 
 
 @pytest.mark.no_cover
-@settings(max_examples=60, deadline=None, suppress_health_check=list(HealthCheck))
+@settings(max_examples=30, deadline=None, suppress_health_check=list(HealthCheck))
 @given(robot=robots())
 def test_saving_and_loading_is_exact_to_the_bit(tmp_path_factory, robot):
     path = tmp_path_factory.getbasetemp() / "robot.toml"
@@ -689,7 +689,7 @@ def assert_loads_or_is_refused_in_words(load):
     assert not any("pydantic" in line or "http" in line for line in words)
 
 
-@settings(max_examples=150, deadline=None, suppress_health_check=list(HealthCheck))
+@settings(max_examples=80, deadline=None, suppress_health_check=list(HealthCheck))
 @given(content=st.binary(max_size=300) | st.text(max_size=300).map(str.encode))
 @example(content=b"\x00")
 @example(content=b"legs = [[]]")

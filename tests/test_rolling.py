@@ -62,8 +62,7 @@ def test_a_walk_on_balls_begins_and_ends_in_the_rest_stance_and_rolls_about_its_
     assert 0.9 < ways[0] / ways[1] < 0.999
 
 
-@pytest.mark.parametrize("gait", HEXAPOD_GAITS)
-@pytest.mark.parametrize("name", BALLS)
+@pytest.mark.parametrize(("name", "gait"), list(zip([*BALLS, *BALLS], HEXAPOD_GAITS, strict=True)))
 def test_default_walks_on_balls_are_possible(name, gait):
     for path in PATHS.values():
         assert plan_walk(preset(name), Gait.named(gait), path).ok

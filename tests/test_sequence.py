@@ -43,7 +43,7 @@ ORDERS = st.lists(st.tuples(st.sampled_from(["stop", "resume", "reverse"]), st.i
 
 
 @pytest.mark.no_cover
-@settings(max_examples=12)
+@settings(max_examples=8)
 @given(ORDERS, st.sampled_from([0.002, 0.004, 0.01]))
 def test_with_stops_and_reversals_it_keeps_its_path_and_joint_limits(orders, dt):
     player = SequencePlayer(UP)

@@ -22,8 +22,7 @@ def sit(name, index, *, attitude=True, ticks=1200, **changes):
     return guard, outputs, [output for output in outputs if output.state == "sitting"]
 
 
-@pytest.mark.parametrize("index", [0, 60])
-@pytest.mark.parametrize("name", PRESETS)
+@pytest.mark.parametrize(("name", "index"), list(zip(PRESETS, [0, 60] * 4, strict=True)))
 def test_it_sits_down_with_stationary_feet(name, index):
     robot, motion = preset(name), walk(name)
     guard, outputs, sitting = sit(name, index)

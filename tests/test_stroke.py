@@ -3,7 +3,7 @@ import math
 import numpy as np
 import pytest
 
-from gait_robots import HEXAPOD_GAITS, PRESETS, point_feet, ring
+from gait_robots import HEXAPOD_GAITS, PRESETS, ROBOTS_AND_GAITS, point_feet, ring
 from tarsus.errors import CollisionError, InputError, StrokeError, UnreachableError
 from tarsus.gait.branch import branches
 from tarsus.gait.excursion import extreme_excursions, walk_excursions
@@ -42,8 +42,7 @@ def works(robot, gait, direction, *, stroke, cycles, of, **more):
 
 @pytest.mark.lengthy
 @pytest.mark.parametrize("direction", DIRECTIONS)
-@pytest.mark.parametrize("name", HEXAPOD_GAITS)
-@pytest.mark.parametrize("robot", PRESETS)
+@pytest.mark.parametrize(("robot", "name"), ROBOTS_AND_GAITS)
 def test_walks_are_possible_up_to_the_longest_stroke_and_refused_beyond(robot, name, direction):
     robot, gait, direction = point_feet(robot), Gait.named(name), DIRECTIONS[direction]
     longest = max_stroke(robot, gait, direction)
@@ -63,8 +62,10 @@ def test_walks_are_possible_up_to_the_longest_stroke_and_refused_beyond(robot, n
 
 
 @pytest.mark.lengthy
-@pytest.mark.parametrize(("robot", "name"), [("strider", "tripod"), ("phantomx", "wave"), ("phoenix", "ripple")])
-@pytest.mark.parametrize("direction", ["forward", "curve", "turn"])
+@pytest.mark.parametrize(
+    ("robot", "name", "direction"),
+    [("strider", "tripod", "forward"), ("phantomx", "wave", "curve"), ("phoenix", "ripple", "turn")],
+)
 def test_the_longest_stroke_equals_a_bisection_over_whole_walks(robot, name, direction):
     """Over walks of several lengths, the shortest limit: never less than `max_stroke`, at most 2 per cent more."""
     robot, gait, direction = point_feet(robot), Gait.named(name), DIRECTIONS[direction]
@@ -111,8 +112,9 @@ def scan(robot, gait, heading, body_height, swing_height):
 
 
 @pytest.mark.lengthy
-@pytest.mark.parametrize("heading", [0.0, 0.9, math.pi / 2])
-@pytest.mark.parametrize("robot", ["strider", "ch3r", "makeyourpet", "phantomx-mk2"])
+@pytest.mark.parametrize(
+    ("robot", "heading"), [("strider", 0.0), ("ch3r", 0.9), ("makeyourpet", math.pi / 2), ("phantomx-mk2", 0.9)]
+)
 def test_the_longest_stroke_against_an_independent_scan_of_the_steady_cycle(robot, heading):
     """Excursions during start and stop exceed those of the steady cycle scanned: at most 5 per cent of the stroke."""
     robot, gait = point_feet(robot), Gait.named("tetrapod")

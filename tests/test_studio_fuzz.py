@@ -219,7 +219,7 @@ plausible = st.one_of(
 
 @pytest.mark.no_cover
 @given(st.lists(plausible, min_size=1, max_size=8), st.floats(0.001, 0.2))
-@settings(max_examples=24)
+@settings(max_examples=14)
 def test_a_session_survives_any_messages_and_can_be_restored(messages, dt):
     asked = Asked()
     for message in messages:

@@ -56,15 +56,15 @@ def test_the_robot_stops_when_its_driver_leaves_or_is_not_heard(leaves):
     machine = Machine()
     asked = machine.visitor()
     asked.types("drive", on=True)
-    plan = {0.02 * i: lambda: asked.types("command", **FORWARD) for i in range(100)}
+    plan = {0.02 * i: lambda: asked.types("command", **FORWARD) for i in range(50)}
     if leaves:
-        plan[2.0] = asked.session.close
+        plan[1.0] = asked.session.close
     seen = []
-    plan[4.9] = lambda: seen.append(asked.session.frame(0.03))
-    recording = machine.go(5.0, plan)
+    plan[4.0] = lambda: seen.append(asked.session.frame(0.03))
+    recording = machine.go(4.1, plan)
     # The twist is 0 within the deadman's time; then the feet return to the stance.
     stopped = max(at for at, command in machine.given if any(command.twist))
-    assert 1.9 <= stopped <= (2.01 if leaves else 1.98 + DEADMAN + 0.02)
+    assert 0.9 <= stopped <= (1.01 if leaves else 0.98 + DEADMAN + 0.02)
     assert recording.states[-1] == "standing"
     assert seen[0] is None if leaves else seen[0].machine.stopped
     assert machine.notes == ["the driver has left: stop" if leaves else "nothing heard for 0.7 s: stop"]

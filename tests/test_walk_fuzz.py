@@ -21,13 +21,13 @@ SECONDS = 30.0
 GIVING = Admittance(mass=1.0, damping=40.0, stiffness=400.0)
 
 
-@pytest.mark.parametrize("seed", range(40))
+@pytest.mark.parametrize("seed", range(0, 40, 3))
 def test_any_stream_of_commands_keeps_the_invariants(seed):
     name, gait = PRESETS[seed % len(PRESETS)], GAITS[seed // len(PRESETS) % len(GAITS)]
     drive(WalkController(preset(name), Gait.named(gait)), seed, SECONDS).assert_sound()
 
 
-@pytest.mark.parametrize("seed", [*range(300, 315), 1023])
+@pytest.mark.parametrize("seed", [*range(300, 306), 1023])
 def test_foot_targets_and_a_swaying_body_keep_them(seed):
     controller = WalkController(
         preset(PRESETS[seed % len(PRESETS)]), Gait.named(GAITS[seed // len(PRESETS) % len(GAITS)])
@@ -35,7 +35,7 @@ def test_foot_targets_and_a_swaying_body_keep_them(seed):
     drive(controller, seed, SECONDS, with_foot_targets=True).assert_sound()
 
 
-@pytest.mark.parametrize("seed", range(100, 110))
+@pytest.mark.parametrize("seed", range(100, 105))
 def test_implausible_readings_keep_them(seed):
     controller = WalkController(preset(PRESETS[seed % len(PRESETS)]), levelling="level", admittance=GIVING)
     broken = drive(controller, seed, SECONDS, sensing=True).broken(flat=False)
@@ -44,7 +44,7 @@ def test_implausible_readings_keep_them(seed):
 
 
 @pytest.mark.no_cover
-@pytest.mark.parametrize("seed", range(200, 204))
+@pytest.mark.parametrize("seed", range(200, 202))
 def test_ticks_of_a_millisecond_keep_them(seed):
     controller = WalkController(preset(PRESETS[seed % len(PRESETS)]))
     trace, rng = Trace(controller), np.random.default_rng(seed)
