@@ -8,7 +8,7 @@ from pinocchio_model import Reference
 from sample_robots import hexapod, random_hexapod, standing
 from tarsus.errors import InputError, MissingDataError
 from tarsus.kinematics.leg import forward_kinematics
-from tarsus.kinematics.mass import MassWeights, centre_of_mass, total_mass
+from tarsus.kinematics.mass import MassWeights, centre_of_mass, known_weight, total_mass
 from tarsus.robot.robot import stack_robots
 
 jax.config.update("jax_enable_x64", True)
@@ -22,6 +22,12 @@ def test_agrees_with_pinocchio(seed):
         mass, com = Reference(robot).com(angles)
         np.testing.assert_allclose(centre_of_mass(robot, angles), com, rtol=0, atol=1e-12)
         np.testing.assert_allclose(total_mass(robot), mass, rtol=1e-14)
+
+
+def test_an_unknown_mass_has_no_weight():
+    robot = hexapod(link_mass=np.full((6, 3), 0.1), body_mass=1.2)
+    assert known_weight(robot) == pytest.approx(3.0 * 9.80665, rel=1e-4)
+    assert known_weight(robot.replace(body_mass=None)) == 0.0
 
 
 def test_by_hand():

@@ -9,7 +9,7 @@ import numpy as np
 
 from tarsus.control.control_output import ControlOutput
 from tarsus.control.readings import SensorReadings
-from tarsus.kinematics.mass import STANDARD_GRAVITY, total_mass
+from tarsus.kinematics.mass import known_weight
 from tarsus.kinematics.pose import Pose
 from tarsus.load.foot_force import balanced_forces
 from tarsus.representation import represented
@@ -67,7 +67,7 @@ class Environment:
     """
 
     def __init__(self, robot: Robot) -> None:
-        self._weight = float(total_mass(robot)) * STANDARD_GRAVITY if robot.has_masses else 0.0
+        self._weight = known_weight(robot)
         self._height, self._force = np.zeros(robot.legs), np.zeros(robot.legs)
         self._tilt = np.zeros(2)
         self._contacts = self._attitude = self._forces = False

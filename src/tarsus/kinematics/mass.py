@@ -14,7 +14,7 @@ from tarsus.robot.robot import Robot
 if TYPE_CHECKING:
     from jaxtyping import Float
 
-__all__ = ["STANDARD_GRAVITY", "MassWeights", "centre_of_mass", "point_masses", "total_mass"]
+__all__ = ["STANDARD_GRAVITY", "MassWeights", "centre_of_mass", "known_weight", "point_masses", "total_mass"]
 
 STANDARD_GRAVITY = 9.80665
 """Standard gravity (ISO 80000-3) [m/s^2]."""
@@ -42,6 +42,17 @@ def total_mass(robot: Robot) -> Float[Array, "*batch"]:
     xp = namespace(robot.body_mass, robot.link_mass)
     links = xp.sum(as_array(xp, robot.link_mass), axis=(-2, -1))
     return xp.asarray(as_array(xp, robot.body_mass) + links)
+
+
+def known_weight(robot: Robot) -> float:
+    """Return the weight of a robot; 0 where its masses are unknown [N].
+
+    Parameters
+    ----------
+    robot : Robot
+        A single robot.
+    """
+    return float(total_mass(robot)) * STANDARD_GRAVITY if robot.has_masses else 0.0
 
 
 def centre_of_mass(

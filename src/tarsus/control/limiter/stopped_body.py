@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from tarsus.control.limitation import Limitation, LimitationKind
 from tarsus.control.limiter.protocol import TwistGrant, TwistRequest, leads_towards
 from tarsus.control.readings import Vector
-from tarsus.kinematics.mass import STANDARD_GRAVITY, total_mass
+from tarsus.kinematics.mass import known_weight
 from tarsus.kinematics.scalar_solver import ScalarSolver
 from tarsus.robot.robot import Robot
 
@@ -40,7 +40,7 @@ class StoppedBody:
 
     def __init__(self, robot: Robot) -> None:
         self.push, self._time, self._way, self._cause = 0.0, 0.0, 0j, ""
-        self._weight = float(total_mass(robot)) * STANDARD_GRAVITY if robot.has_masses else 0.0
+        self._weight = known_weight(robot)
         self._mounts: list[complex] = (robot.geometry.mount_x + 1j * robot.geometry.mount_y).tolist()
         self._solver = ScalarSolver(robot)
 

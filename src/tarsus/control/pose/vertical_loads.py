@@ -7,7 +7,7 @@ from collections.abc import Callable, Sequence
 import numpy as np
 
 from tarsus.control.readings import ValidReadings
-from tarsus.kinematics.mass import STANDARD_GRAVITY, centre_of_mass, total_mass
+from tarsus.kinematics.mass import centre_of_mass, known_weight
 from tarsus.load.foot_force import balanced_forces
 from tarsus.robot.robot import Robot
 
@@ -35,7 +35,7 @@ class VerticalLoads:
 
     def __init__(self, robot: Robot) -> None:
         self._robot, self._loads = robot, [0.0] * robot.legs
-        self._weight = float(total_mass(robot)) * STANDARD_GRAVITY if robot.has_masses else 0.0
+        self._weight = known_weight(robot)
         self._centre: list[float] | None = None
 
     def are_known(self, valid: ValidReadings, bears: Callable[[], Sequence[bool]] | None) -> bool:

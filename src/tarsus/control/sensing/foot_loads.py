@@ -10,7 +10,7 @@ import numpy as np
 from tarsus.control.pose.admittance import Admittance, AdmittanceFilter
 from tarsus.control.readings import ValidReadings, Vector
 from tarsus.control.sensing.joint_contacts import JointContacts
-from tarsus.kinematics.mass import STANDARD_GRAVITY, total_mass
+from tarsus.kinematics.mass import known_weight
 from tarsus.load.foot_force import FootForceEstimator, balanced_forces
 from tarsus.robot.robot import Robot
 
@@ -43,7 +43,7 @@ class FootLoads:
     """
 
     def __init__(self, robot: Robot, admittance: Admittance | None) -> None:
-        self._weight = float(total_mass(robot)) * STANDARD_GRAVITY if robot.has_masses else 0.0
+        self._weight = known_weight(robot)
         self._torques = FootForceEstimator(robot) if robot.has_masses else None
         self._joints = JointContacts(robot) if robot.has_masses and all(map(all, robot.servos)) else None
         self.estimated = False

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from tarsus.control.readings import Vector
-from tarsus.kinematics.mass import STANDARD_GRAVITY, total_mass
+from tarsus.kinematics.mass import known_weight
 from tarsus.load.compliant.joint_springs import JointSprings
 from tarsus.robot.robot import Robot
 
@@ -77,7 +77,7 @@ class JointContacts:
         self._tick, self._servos, self._state = 0.0, list[tuple[float, ...]](), list[tuple[float, float, float]]()
         self._expected: deque[list[tuple[float, float]]] = deque(maxlen=_KEPT)
         longest = float((lengths + np.asarray(robot.geometry.tibia)).max())
-        self._least = _LEAST_LOAD * float(total_mass(robot)) * STANDARD_GRAVITY * longest
+        self._least = _LEAST_LOAD * known_weight(robot) * longest
         self.lag, self._load, self._left = _LAG, 0.0, 0.0
         self._familiar, self._mean = True, [0.0] * robot.legs
 

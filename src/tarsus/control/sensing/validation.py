@@ -13,7 +13,7 @@ from tarsus.control.sensing.channel import Channel
 from tarsus.control.sensing.leg_channels import ContactChannel, JointAngleChannel, VectorChannel
 from tarsus.control.sensing.plain_values import as_number
 from tarsus.gait.ground_heights import GroundHeights
-from tarsus.kinematics.mass import STANDARD_GRAVITY, total_mass
+from tarsus.kinematics.mass import known_weight
 from tarsus.robot.joint_limits import joint_limits
 from tarsus.robot.robot import Robot
 
@@ -150,7 +150,7 @@ def _stale(name: str, age: Any) -> str:
 
 
 def _forces_channel(robot: Robot) -> VectorChannel:
-    weight = float(total_mass(robot)) * STANDARD_GRAVITY if robot.has_masses else _ANY_WEIGHT
+    weight = known_weight(robot) or _ANY_WEIGHT
     most = _MOST_WEIGHTS * weight
     bounds = np.tile([[-most, most], [-most, most], [-_PULL * weight, most]], (robot.legs, 1, 1))
     beyond = f"beyond {_MOST_WEIGHTS:g} times the robot's weight, or downward beyond {_PULL:g} times"
