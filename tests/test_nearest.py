@@ -75,9 +75,8 @@ def unreachable_feet(rng, robot, near_axis):
 
 
 @pytest.mark.no_cover
+@pytest.mark.parametrize(("limits", "sideways"), [("random", 0.0), ("random", 0.03), ("full", 0.03)])
 @pytest.mark.parametrize("knee", ["up", "down"])
-@pytest.mark.parametrize("sideways", [0.0, 0.03])
-@pytest.mark.parametrize("limits", ["random", "full"])
 @settings(max_examples=4)
 @given(seed=seeds(), near_axis=st.booleans())
 def test_no_search_finds_a_nearer_point(limits, sideways, knee, seed, near_axis):
