@@ -163,6 +163,7 @@ def test_places_out_of_reach_on_level_ground_do_not_tell_how_low_a_leg_reaches()
     # Ends of a stroke of half a metre are in reach at no height, its middle is.
     reach.update(posture, rest, np.array([1.0, 0.0, 0.0]), 0.5)
     assert (reach.lowest, reach.highest) == (lowest, highest)
+    assert reach.highest_on_way(0, rest[0], rest[0] + 0.25) == highest[0] > 0.0
     # A leg whose foothold is out of reach keeps what is known of it, as 0 would command the body down at once.
     reach.update(posture, np.array([rest[0] + 0.5, *rest[1:]]), still, 0.5)
     assert (reach.lowest, reach.highest) == (lowest, highest)

@@ -89,7 +89,7 @@ class Reach:
             most = highest.min(axis=0, where=walked, initial=np.inf)
             self.lowest = np.where(kept, self.lowest, least).tolist()
             self.highest = np.where(kept, self.highest, most).tolist()
-            self._tops = [tuple(heights) for heights in highest.T.tolist()]
+            self._tops = [tuple(heights) for heights in np.where(walked, highest, self.highest).T.tolist()]
 
     def highest_on_way(self, leg: int, start: complex, end: complex) -> float:
         """Return the greatest height of a foot on a way: front legs reach higher ahead, rear legs behind [m].
