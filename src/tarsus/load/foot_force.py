@@ -144,13 +144,11 @@ def balanced_forces(
     count = sum(contacts)
     if not count:
         return (0.0,) * len(feet)
-    sum_x = sum_y = xx = xy = yy = 0.0
-    for foot, part in zip(feet, contacts, strict=True):
-        sum_x += part * foot[0]
-        sum_y += part * foot[1]
-    mean_x, mean_y = sum_x / count, sum_y / count
-    for foot, part in zip(feet, contacts, strict=True):
-        x, y = foot[0] - mean_x, foot[1] - mean_y
+    down = [(foot[0], foot[1], part) for foot, part in zip(feet, contacts, strict=True) if part]
+    mean_x, mean_y = sum(part * x for x, _, part in down) / count, sum(part * y for _, y, part in down) / count
+    xx = xy = yy = 0.0
+    for at_x, at_y, part in down:
+        x, y = at_x - mean_x, at_y - mean_y
         xx += part * x * x
         xy += part * x * y
         yy += part * y * y
