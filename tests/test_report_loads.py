@@ -36,8 +36,6 @@ from tarsus.report.loads_torque import plot_torques, servo_limits
 from tarsus.report.style import SEVERITY_COLOURS
 from tarsus.robot.servo import Servo
 
-PLOTS = (plot_torques, plot_torque_speed)
-
 
 def bare():
     """The strider without servos."""

@@ -290,6 +290,11 @@ def test_the_pages_live_walk_is_reproduced():
 
 
 @pytest.mark.no_cover
+def test_the_pages_live_walk_on_soft_servos_is_reproduced():
+    assert_reproduced(docs_module("how_true").soft_row(STRIDER, "tripod"), table_on_the_page("soft"))
+
+
+@pytest.mark.no_cover
 @pytest.mark.parametrize(
     ("robot", "fault"),
     [("strider", "one servo dead (middle left femur)"), ("phantomx", "push of half the weight for 0.2 s")],

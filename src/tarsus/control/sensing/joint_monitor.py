@@ -134,7 +134,8 @@ class JointMonitor:
             self._evidence, off = np.zeros((2, *commanded.shape)), _joints_off(measured, joints, _IDLE_ERROR)
         for leg, joint, now in off:
             recent = [float(angles[leg, joint]) for _, angles in self._commands]
-            over, error = now - max(recent), max(now - max(recent), min(recent) - now)
+            over = now - max(recent)
+            error = max(over, min(recent) - now)
             if error <= _IDLE_ERROR:
                 continue
             before = last[leg]

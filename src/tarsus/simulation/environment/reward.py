@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from tarsus.errors import InputError
-from tarsus.kinematics.mass import known_weight
+from tarsus.kinematics.mass import STANDARD_GRAVITY, total_mass
 from tarsus.representation import represented
 from tarsus.robot.robot import Robot
 from tarsus.simulation.environment.body_motion import BodyMotion
@@ -91,7 +91,7 @@ class Reward:
         self._weights = tuple(dataclasses.asdict(weights).items())
         self.names, self.fall = tuple(name for name, _ in self._weights), weights.fall
         self._top = top
-        self._weight_speed = known_weight(robot) * float(top[0])
+        self._weight_speed = float(total_mass(robot)) * STANDARD_GRAVITY * float(top[0])
 
     def terms(
         self,

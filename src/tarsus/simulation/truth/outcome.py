@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Self
 
 import numpy as np
 
-from tarsus.kinematics.mass import known_weight
+from tarsus.kinematics.mass import STANDARD_GRAVITY, total_mass
 from tarsus.representation import represented
 from tarsus.robot.robot import JOINTS
 from tarsus.simulation.truth.trace import Trace
@@ -94,7 +94,7 @@ class Outcome:
         rms = np.sqrt((trace.torques**2 * step[:, None, None]).sum(0) / time[-1])
         work = (np.maximum(trace.torques * trace.speeds, 0.0).sum((1, 2)) * step).sum()
         distance = float(np.hypot(*path[-1, :2]))
-        weight = known_weight(trace.robot)
+        weight = float(total_mass(trace.robot)) * STANDARD_GRAVITY
         return cls(
             duration=float(time[-1]),
             commanded_end=_end(commanded),
