@@ -111,6 +111,13 @@ def test_servos_of_another_voltage_are_excluded():
     assert "DS3218" not in sizing.excluded
 
 
+def test_a_supply_that_no_servo_takes_excludes_all():
+    found = sample_loads("burnt-mg996r", supply=20.0)
+    sizing = size_servos(found.robot, found)
+    assert set(sizing.excluded) == set(list_servos())
+    assert (sizing.candidates, sizing.sets, sizing.mixed) == ((), (), None)
+
+
 @pytest.mark.no_cover
 def test_verdict_on_the_current_servos():
     found = sample_loads("strider", "wave")

@@ -277,7 +277,7 @@ class _Evaluation:
         servos = sorted((s for name, s in servo_catalogue().items() if name not in excluded), key=_mass_order)
         uniform = {candidate.name for candidate in candidates}
         lightest = []
-        for bus in sorted(frozenset.union(*(servo.buses for servo in servos))):
+        for bus in sorted(frozenset[str]().union(*(servo.buses for servo in servos))):
             on_bus = [servo for servo in servos if bus in servo.buses]
             found = [self.set_at(supply, on_bus) for supply in self.supplies(on_bus)]
             best = min((each for each in found if each is not None), key=_candidate_order, default=None)
