@@ -49,14 +49,20 @@ class Stairs:
         require_number("tread", self.tread, zero=False)
         if not 0 < abs(self.rise) < FAR:
             raise InputError(f"rise is {self.rise:g} m; it must be between -{FAR:g} and {FAR:g} m, and not 0")
-        if self.steps < 1:
-            raise InputError(f"steps is {self.steps}; there must be at least 1")
+        if self.steps < 1 or self.steps % 1:
+            raise InputError(f"steps is {self.steps}; there must be at least 1, and a whole number of them")
+        last = self.start + (self.steps - 1) * self.tread
+        if not -FAR < self.start <= last < FAR:
+            raise InputError(
+                f"the stairs go from {self.start:g} to {last:g} m; the ground goes from -{FAR:g} to {FAR:g} m"
+            )
 
     @cached_property
     def profile(self) -> Profile:
         """Its cross-section."""
-        edges = tuple(self.start + number * self.tread for number in range(self.steps))
-        return Profile(edges, tuple((number * self.rise, number * self.rise) for number in range(self.steps + 1)))
+        steps = int(self.steps)
+        edges = tuple(self.start + number * self.tread for number in range(steps))
+        return Profile(edges, tuple((number * self.rise, number * self.rise) for number in range(steps + 1)))
 
     def height(self, x: Any, y: Any) -> Shaped[np.ndarray, "..."]:
         """Return the height of the ground [m]; see `Terrain`."""
