@@ -278,6 +278,8 @@ def test_a_robot_that_sees_the_ground_crosses_blocks_as_far_and_calmer_than_one_
 def test_heights_are_checked_where_they_are_made_and_where_they_come_in():
     with pytest.raises(InputError, match=r"shape \(3,\)"):
         GroundHeights(heights=np.zeros(3))
+    with pytest.raises(InputError, match=r"shape \(0, 3\) must have two axes, some points"):
+        GroundHeights(heights=np.zeros((0, 3)))
     with pytest.raises(InputError, match="infinite"):
         GroundHeights(heights=np.full((2, 2), math.inf))
     with pytest.raises(InputError, match="cell is 0 m"):

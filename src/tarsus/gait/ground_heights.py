@@ -54,7 +54,7 @@ class GroundHeights:
     Raises
     ------
     InputError
-        If the array has not two axes, a height is infinite, or `cell` is not a positive number.
+        If the array is empty or has not two axes, a height is infinite, or `cell` is not a positive number.
     """
 
     heights: Float[np.ndarray, "rows columns"]
@@ -62,8 +62,10 @@ class GroundHeights:
 
     def __post_init__(self) -> None:
         heights = np.array(self.heights, dtype=np.float64)
-        if heights.ndim != 2 or np.isinf(heights).any():
-            raise InputError(f"ground heights of shape {heights.shape} must have two axes and no infinite value")
+        if heights.ndim != 2 or not heights.size or np.isinf(heights).any():
+            raise InputError(
+                f"ground heights of shape {heights.shape} must have two axes, some points and no infinite value"
+            )
         if not 0 < self.cell < np.inf:
             raise InputError(f"ground heights: cell is {self.cell:g} m; it must be a positive number")
         heights.setflags(write=False)
