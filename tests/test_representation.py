@@ -199,6 +199,10 @@ def test_a_motion_tells_whether_it_is_possible_and_how_stable_it_is():
     assert f"margin={motion.margin.min():.4g} to {motion.margin.max():.4g} m, shape ({motion.time.size},)" in text
 
 
+def test_a_value_that_knows_nothing_is_its_name():
+    assert repr(tarsus.SensorReadings(age=float("nan"))) == "SensorReadings()"
+
+
 def test_units_are_those_of_the_docstring():
     @represented()
     class Sample(tuple):

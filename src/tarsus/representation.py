@@ -78,6 +78,8 @@ def represented(*names: str) -> Callable[[_Class], _Class]:
 
 def _wrapped(name: str, attributes: Sequence[tuple[str, str]]) -> str:
     """Return ``name(attribute=value, ...)`` in lines of at most 100 characters, divided between attributes."""
+    if not attributes:
+        return f"{name}()"
     lines, ends = [f"{name}("], [*[", "] * (len(attributes) - 1), ")"]
     for (key, value), end in zip(attributes, ends, strict=True):
         piece = f"{key}={value}{end}"
