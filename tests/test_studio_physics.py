@@ -193,6 +193,8 @@ def test_an_unstable_simulation_ends_driving_with_its_reason(monkeypatch):
 def test_other_physics_ends_driving():
     asked = in_physics(view="drive")
     asked.all("drive", on=True)
+    asked.all("physics", physics=options())
+    assert asked.session.driving
     asked.all("physics", physics={"on": False})
     assert not asked.session.driving
     asked.all("drive", on=True)

@@ -286,7 +286,9 @@ class Session:
     def _physics(self, message: ask.SetPhysics) -> Answers:
         state = self.state.model_copy(update={"physics": message.physics})
         answers = list(self._views.terrain(state, id=message.id))
-        self._live.end_driving()
+        if message.physics != self.state.physics:
+            # The client starts driving anew where it sees other physics.
+            self._live.end_driving()
         self._history.change(state, commit=message.commit)
         yield from answers
 
