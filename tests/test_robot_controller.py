@@ -1,6 +1,7 @@
 """The robot controller: its states, what it gives out, and what holds whatever is commanded."""
 
 import math
+import re
 
 import numpy as np
 import pytest
@@ -290,6 +291,26 @@ def test_while_the_guard_holds_the_state_is_fault_and_then_it_goes_on():
     speeds = np.abs(np.diff([output.angles for output in outputs], axis=0)) / DT
     assert speeds.max() <= 0.3 + 1e-9
     assert sum(controller.guard.counts.values()) == sum(len(output.interventions) for output in outputs)
+
+
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        ({"gait": "tripod"}, "gait is 'tripod'; it must be a Gait, like Gait.named('tripod')"),
+        ({"levelling": "flat"}, "levelling is 'flat'; it must be None or one of level, between, follow"),
+        ({"levelling": True}, "levelling is True"),
+    ],
+)
+def test_options_that_are_none_of_the_choices_are_refused(options, message):
+    with pytest.raises(InputError, match=re.escape(message)):
+        RobotController(STRIDER, **options)
+
+
+@pytest.mark.parametrize("guard", [1, "yes", None])
+def test_a_guard_is_chosen_clearly(guard):
+    with pytest.raises(InputError, match=re.escape(f"guard is {guard!r}; it must be True, False or GuardBounds")):
+        RobotController(STRIDER, guard=guard)
+    assert RobotController(STRIDER, guard=np.True_).guard is not None
 
 
 def test_without_a_guard_angles_are_given_out_as_they_are():

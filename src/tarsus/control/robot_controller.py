@@ -23,7 +23,7 @@ from tarsus.control.states.robot_state import RobotState, next_state, requested_
 from tarsus.control.terrain.roughness import GroundAdaptation
 from tarsus.control.walk.ground_pose import ground_frame
 from tarsus.control.walk_controller import WalkController
-from tarsus.errors import TarsusError
+from tarsus.errors import InputError, TarsusError
 from tarsus.gait.gait import Gait
 from tarsus.gait.walk_setup import require_number
 from tarsus.kinematics.leg import forward_kinematics
@@ -115,8 +115,10 @@ class RobotController:
         self._now = self._placed(self._activity.snapshot)
         self._goal = RobotState.STANDING if self._now.state.upright else self._now.state
         self._rejected: Limitation | None = None
+        if not isinstance(guard, GuardBounds | bool | np.bool):
+            raise InputError(f"guard is {guard!r}; it must be True, False or GuardBounds")
         bounds = guard if isinstance(guard, GuardBounds) else None
-        if guard is True:
+        if bounds is None and guard:
             # Where a servo's speed is unknown, walk controller and guard have to assume the same.
             walk = walking.controller
             bounds = GuardBounds.of(robot, speed=walk.joint_speed, acceleration=walk.joint_acceleration)

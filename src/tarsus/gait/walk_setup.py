@@ -136,6 +136,8 @@ class WalkSetup:
         if robot.batch_shape:
             raise InputError(f"a walk is planned for a single robot, not for a batch {robot.batch_shape} of designs")
         gait = Gait.named(robot.gait.name, legs=robot.legs) if gait is None else gait
+        if not isinstance(gait, Gait):
+            raise InputError(f"gait is {gait!r}; it must be a Gait, like Gait.named('tripod')")
         gait.require_legs(robot.legs)
         robot = robot.item(())
         swing_height = (

@@ -6,6 +6,7 @@ import math
 from collections.abc import Sequence
 from typing import Literal, NamedTuple, TypeAlias
 
+from tarsus.errors import InputError
 from tarsus.gait.foot_plane import FootPlane
 
 __all__ = ["LEVELLING_SHARES", "Levelling", "PostureFeedback", "PostureRates"]
@@ -65,6 +66,8 @@ class PostureFeedback:
     """
 
     def __init__(self, levelling: Levelling | None, *, scale: float = 1.0) -> None:
+        if levelling is not None and levelling not in LEVELLING_SHARES:
+            raise InputError(f"levelling is {levelling!r}; it must be None or one of {', '.join(LEVELLING_SHARES)}")
         self._scale = scale
         self._share = None if levelling is None else LEVELLING_SHARES[levelling]
         self.raised = self.given_way = 0.0
