@@ -11,7 +11,7 @@ import numpy as np
 from tarsus.errors import InputError
 from tarsus.gait.walk_setup import require_number
 from tarsus.simulation.settings import FRICTION
-from tarsus.simulation.terrain.profile import Profile
+from tarsus.simulation.terrain.profile import Profile, require_count, require_on_ground
 
 if TYPE_CHECKING:
     from jaxtyping import Shaped
@@ -49,18 +49,20 @@ class Gaps:
     def __post_init__(self) -> None:
         for name in ("friction", "width", "spacing", "depth"):
             require_number(name, getattr(self, name), zero=False)
-        if self.count < 1:
-            raise InputError(f"count is {self.count}; there must be at least 1")
+        count = require_count("count", self.count)
         if self.width >= self.spacing:
             raise InputError(f"width is {self.width:g} m; it must be less than the spacing, {self.spacing:g} m")
+        last = self.start + (count - 1) * self.spacing
+        require_on_ground("gaps go", *(self.start, last)[:count], last + self.width)
 
     @cached_property
     def profile(self) -> Profile:
         """Its cross-section."""
-        starts = [self.start + number * self.spacing for number in range(self.count)]
+        count = int(self.count)
+        starts = [self.start + number * self.spacing for number in range(count)]
         edges = tuple(edge for start in starts for edge in (start, start + self.width))
         floor = (-self.depth, -self.depth)
-        return Profile(edges, ((0.0, 0.0), *((floor, (0.0, 0.0)) * self.count)))
+        return Profile(edges, ((0.0, 0.0), *((floor, (0.0, 0.0)) * count)))
 
     def height(self, x: Any, y: Any) -> Shaped[np.ndarray, "..."]:
         """Return the height of the ground [m]; see `Terrain`."""

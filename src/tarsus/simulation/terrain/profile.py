@@ -2,17 +2,19 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
+from tarsus.errors import InputError
 from tarsus.simulation.engine import mujoco_module
 from tarsus.simulation.terrain.surface import FAR, surface
 
 if TYPE_CHECKING:
     from jaxtyping import Shaped
 
-__all__ = ["Profile"]
+__all__ = ["Profile", "require_count", "require_on_ground"]
 
 # How thick the ground is below its lowest point [m].
 _THICKNESS = 1.0
@@ -71,3 +73,40 @@ class Profile(NamedTuple):
         ]
         spec.add_mesh(name=name, uservert=np.array(corners).ravel())
         spec.worldbody.add_geom(name=name, type=geom.mjGEOM_MESH, meshname=name, **surface(friction))
+
+
+def require_count(name: str, count: float) -> int:
+    """Return a whole number of at least 1.
+
+    Parameters
+    ----------
+    name, count : str, float
+        Its name in messages; the number.
+
+    Raises
+    ------
+    InputError
+        If it is less than 1, or no whole number.
+    """
+    if count < 1 or count % 1:
+        raise InputError(f"{name} is {count}; there must be at least 1, and a whole number of them")
+    return int(count)
+
+
+def require_on_ground(name: str, *edges: float) -> None:
+    """Refuse edges that do not ascend within the ground: segments between them would have no width.
+
+    Parameters
+    ----------
+    name : str
+        What has the edges, in messages.
+    *edges : float
+        The edges that limit all others [m].
+
+    Raises
+    ------
+    InputError
+        If one is not a number, they do not ascend, or they leave the ground.
+    """
+    if not all(left < right for left, right in pairwise((-FAR, *edges, FAR))):
+        raise InputError(f"the {name} from {edges[0]:g} to {edges[-1]:g} m; the ground goes from -{FAR:g} to {FAR:g} m")

@@ -12,8 +12,7 @@ import numpy as np
 from tarsus.errors import InputError
 from tarsus.gait.walk_setup import require_number
 from tarsus.simulation.settings import FRICTION
-from tarsus.simulation.terrain.profile import Profile
-from tarsus.simulation.terrain.surface import FAR
+from tarsus.simulation.terrain.profile import Profile, require_on_ground
 
 if TYPE_CHECKING:
     from jaxtyping import Shaped
@@ -45,11 +44,7 @@ class Ramp:
     def __post_init__(self) -> None:
         require_number("friction", self.friction, zero=False)
         require_number("length", self.length, zero=False)
-        if not -FAR < self.start < self.start + self.length < FAR:
-            raise InputError(
-                f"the ramp goes from {self.start:g} to {self.start + self.length:g} m; the ground goes from -{FAR:g} "
-                f"to {FAR:g} m"
-            )
+        require_on_ground("ramp goes", self.start, self.start + self.length)
         if not 0 < abs(self.slope) < math.pi / 3:
             raise InputError(f"slope is {math.degrees(self.slope):g} deg; it must be between -60 and 60 deg, and not 0")
 

@@ -11,7 +11,7 @@ import numpy as np
 from tarsus.errors import InputError
 from tarsus.gait.walk_setup import require_number
 from tarsus.simulation.settings import FRICTION
-from tarsus.simulation.terrain.profile import Profile
+from tarsus.simulation.terrain.profile import Profile, require_count, require_on_ground
 from tarsus.simulation.terrain.surface import FAR
 
 if TYPE_CHECKING:
@@ -49,13 +49,8 @@ class Stairs:
         require_number("tread", self.tread, zero=False)
         if not 0 < abs(self.rise) < FAR:
             raise InputError(f"rise is {self.rise:g} m; it must be between -{FAR:g} and {FAR:g} m, and not 0")
-        if self.steps < 1 or self.steps % 1:
-            raise InputError(f"steps is {self.steps}; there must be at least 1, and a whole number of them")
-        last = self.start + (self.steps - 1) * self.tread
-        if not -FAR < self.start <= last < FAR:
-            raise InputError(
-                f"the stairs go from {self.start:g} to {last:g} m; the ground goes from -{FAR:g} to {FAR:g} m"
-            )
+        steps = require_count("steps", self.steps)
+        require_on_ground("stairs go", *(self.start, self.start + (steps - 1) * self.tread)[:steps])
 
     @cached_property
     def profile(self) -> Profile:

@@ -11,7 +11,7 @@ import numpy as np
 from tarsus.errors import InputError
 from tarsus.gait.walk_setup import require_number
 from tarsus.simulation.settings import FRICTION
-from tarsus.simulation.terrain.profile import Profile
+from tarsus.simulation.terrain.profile import Profile, require_on_ground
 from tarsus.simulation.terrain.surface import FAR
 
 if TYPE_CHECKING:
@@ -42,6 +42,7 @@ class Step:
         require_number("friction", self.friction, zero=False)
         if not 0 < abs(self.rise) < FAR:
             raise InputError(f"rise is {self.rise:g} m; it must be between -{FAR:g} and {FAR:g} m, and not 0")
+        require_on_ground("step goes", self.start)
 
     @cached_property
     def profile(self) -> Profile:
