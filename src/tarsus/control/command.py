@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from typing import Any, Literal
 
 from tarsus.errors import InputError
+from tarsus.gait.gait import Gait
 from tarsus.representation import represented
 
 __all__ = ["BODY_AXES", "Command", "finite_numbers"]
@@ -49,6 +50,11 @@ class Command:
         Velocities of the feet of such legs instead, in the heading frame [m/s].
     state : RobotState or str, optional
         The state that is wanted, standing, lying or folded: for a `RobotController`.
+
+    Raises
+    ------
+    InputError
+        If a value is not finite, of another type or out of its range.
     """
 
     twist: Sequence[float] = (0.0, 0.0, 0.0)
@@ -75,9 +81,18 @@ class Command:
             auto = name == "cycle_time" and isinstance(value, str) and value == "auto"
             if value is not None and not auto:
                 object.__setattr__(self, name, finite_numbers(name, (value,), (name,))[0])
+        self._require_ranges()
         for name in ("foot_targets", "foot_velocities"):
             if getattr(self, name) is not None:
                 object.__setattr__(self, name, _by_leg(name, getattr(self, name), back=name == "foot_targets"))
+
+    def _require_ranges(self) -> None:
+        if self.gait is not None and not isinstance(self.gait, str | Gait):
+            raise InputError(f"the command's gait is {self.gait!r}; it must be a name or a Gait")
+        if self.swing_height is not None and self.swing_height < 0:
+            raise InputError(f"the command's swing_height is {self.swing_height} m; it must not be negative")
+        if isinstance(self.cycle_time, float) and self.cycle_time <= 0:
+            raise InputError(f"the command's cycle_time is {self.cycle_time} s; it must be greater than 0")
 
     @property
     def parameters(self) -> dict[str, Any]:

@@ -53,7 +53,7 @@ class PersistentCommand:
         changes, legs = command.parameters, self._robot.legs
         if isinstance(changes.get("gait"), str):
             changes["gait"] = Gait.named(changes["gait"], legs=legs)
-        if isinstance(changes.get("gait"), Gait):
+        if "gait" in changes:
             changes["gait"].require_legs(legs)
         if command.state is not None:
             changes["state"] = requested_state(command.state)

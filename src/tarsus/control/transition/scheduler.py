@@ -12,7 +12,7 @@ from tarsus.control.incremental import Incremental
 from tarsus.control.limitation import Cause, Limitation, LimitationKind
 from tarsus.control.transition.shortfalls import UNREACHABLE, rejection_limitations
 from tarsus.control.transition.stance_transition import StanceTransition, WalkParameters
-from tarsus.errors import InputError, UnreachableError
+from tarsus.errors import UnreachableError
 from tarsus.gait.gait import Gait
 
 __all__ = ["PlanTransition", "TransitionScheduler"]
@@ -81,7 +81,7 @@ class TransitionScheduler:
         Raises
         ------
         InputError
-            If a value is out of its range, or the gait for another number of legs.
+            If the gait is for another number of legs.
         UnknownNameError
             If no gait has the name.
         """
@@ -91,10 +91,6 @@ class TransitionScheduler:
         if changes.get("cycle_time") == "auto":
             changes["cycle_time"] = None
         asked = dataclasses.replace(before, correction=correction, excluded=excluded, **changes)
-        if asked.swing_height < 0:
-            raise InputError(f"the command's swing_height is {asked.swing_height} m; it must not be negative")
-        if asked.cycle_time is not None and asked.cycle_time <= 0:
-            raise InputError(f"the command's cycle_time is {asked.cycle_time} s; it must be greater than 0")
         if asked != before:
             self.requested, self.rejections = asked, {}
             self._shortfalls = ()
@@ -188,7 +184,5 @@ class TransitionScheduler:
 def _gait(before: Gait, gait: Gait | str) -> Gait:
     if isinstance(gait, str):
         gait = before if gait == before.name else Gait.named(gait, legs=before.legs)
-    if not isinstance(gait, Gait):
-        raise InputError(f"the command's gait is {gait!r}; it must be a name or a Gait")
     gait.require_legs(before.legs)
     return gait
