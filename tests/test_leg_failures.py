@@ -132,6 +132,33 @@ def test_contacts_tell_of_the_legs_that_are_left_too(touches, failed):
     assert controller.leg_failures.failed == failed
 
 
+@pytest.mark.parametrize("missing", [None, (np.nan,) * 3, "?"])
+def test_a_leg_that_is_not_measured_is_no_fault_of_the_others_after_one_has_failed(missing):
+    controller = tarsus.RobotController(STRIDER)
+    controller.leg_failures.failed[1] = 2
+    for _ in range(250):
+        angles = [*controller.output.angles[:4], missing, controller.output.angles[5]]
+        controller.step(
+            (0.03, 0.0, 0.0), 0.01, tarsus.SensorReadings(joint_angles=angles, contacts=[True] * 4 + [None, True])
+        )
+    assert controller.leg_failures.failed == {1: 2}
+    assert controller.output.twist[0] > 0.02
+
+
+def test_gait_and_cycle_are_those_of_the_legs_that_are_left():
+    controller = tarsus.RobotController(STRIDER)
+    plant = tarsus.IdealPlant(STRIDER)
+    commands = [(0.0, (0.05, 0.0, 0.0))]
+    before = tarsus.run(controller, plant, commands, duration=1.0)
+    controller.leg_failures.failed[1] = 2
+    after = tarsus.run(controller, plant, commands, duration=4.0)
+    walk = controller._activity.controller
+    assert before.gaits[-1] == "tripod"
+    assert after.gaits[-1] == walk.gait.name != "tripod"
+    assert controller.output.gait.offsets[2:] == walk.gait.offsets[1:]
+    assert after.cycle_times[-1] == walk.cycle_time != before.cycle_times[-1]
+
+
 def test_joints_of_a_caught_leg_that_are_off_and_then_do_not_move_are_not_taken_for_stuck():
     monitor = JointMonitor()
     for tick in range(200):

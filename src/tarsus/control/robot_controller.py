@@ -94,7 +94,8 @@ class RobotController:
     ) -> None:
         self.robot = robot
         self.body_height, self.swing_height = body_height, swing_height
-        self._gait = Gait.named(robot.gait.name, legs=robot.legs) if gait is None else gait
+        # Of a walk on all legs, and of the present one.
+        self._gait = self._shown_gait = Gait.named(robot.gait.name, legs=robot.legs) if gait is None else gait
         self.compliant = admittance is not None
         heights: dict[str, Any] = {"body_height": body_height, "swing_height": swing_height}
         self._options = heights | {"levelling": levelling, "adaptation": adaptation, "admittance": admittance}
@@ -177,8 +178,10 @@ class RobotController:
             self._base = ground_frame(self._now.body) @ ground_frame(self._activity.snapshot.body).inverse()
         self._now = self._placed(self._activity.snapshot)
         self._rate = float(np.abs(self._now.angles - before).max()) / dt
+        if isinstance(activity, Walking):
+            self._shown_gait, self._cycle_time = activity.gait, activity.controller.cycle_time
         if type(activity) is Walking:
-            self._gait, self._cycle_time = activity.controller.gait, activity.controller.cycle_time
+            self._gait = activity.gait
         if isinstance(activity, Playing) and activity.done:
             self._end_change(activity)
 
@@ -290,7 +293,7 @@ class RobotController:
             contacts=now.contacts,
             belly=now.belly,
             twist=now.twist,
-            gait=self._gait,
+            gait=self._shown_gait,
             cycle_time=self._cycle_time,
             at_rest=self._at_rest and self._next_change() is None,
         )

@@ -15,6 +15,7 @@ from tarsus.control.states.robot_state import RobotState
 from tarsus.control.walk_controller import WalkController
 from tarsus.control.walk_state import WalkState
 from tarsus.errors import InputError
+from tarsus.gait.gait import Gait
 from tarsus.kinematics.pose import Pose
 from tarsus.kinematics.rest import resting_pose
 from tarsus.robot.robot import Robot
@@ -97,6 +98,11 @@ class Walking:
         felt = readings if readings is not None and readings.has_ground_feedback else None
         self.controller.step(command, dt, readings=felt)
         self.measured = ValidReadings() if felt is None else self.controller.measured
+
+    @property
+    def gait(self) -> Gait:
+        """The order of the steps of all legs."""
+        return self.controller.gait
 
     @property
     def stands(self) -> bool:

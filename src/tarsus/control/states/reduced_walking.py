@@ -13,6 +13,7 @@ from tarsus.control.command import Command
 from tarsus.control.limitation import Limitation, LimitationKind
 from tarsus.control.readings import CHANNELS, SensorReadings
 from tarsus.control.sensing.joint_monitor import JointMonitor
+from tarsus.control.sensing.plain_values import as_items, as_vector
 from tarsus.control.states.activity import Snapshot, Walking
 from tarsus.control.states.robot_state import RobotState
 from tarsus.control.walk_controller import WalkController
@@ -88,6 +89,9 @@ class ReducedWalking(Walking):
         # Joint angles at which those of the robot that is left are 0.
         self._zero = np.zeros((len(self._legs), 3))
         self._zero[:, 0] = np.asarray(self.controller.robot.mount_yaw) - np.asarray(rest.mount_yaw)
+        offsets = np.zeros(robot.legs)
+        offsets[self._legs] = self.controller.gait.offsets
+        self._gait = dataclasses.replace(self.controller.gait, offsets=tuple(offsets.tolist()))
         self._limitations = tuple(
             Limitation(kind=LimitationKind.GAIT, cause=_CAUSE, leg=robot.leg_names[leg], joint=JOINTS[joint])
             for leg, joint in failed.items()
@@ -125,6 +129,11 @@ class ReducedWalking(Walking):
         )
 
     @property
+    def gait(self) -> Gait:
+        """The order of the steps of the legs that are left; the others count as if they stepped with offset 0."""
+        return self._gait
+
+    @property
     def stands(self) -> bool:
         """Whether the robot stands, every foot that is left on the ground and no step under way."""
         return self._time >= self._duration and super().stands
@@ -158,10 +167,17 @@ class ReducedWalking(Walking):
 
     def _of_legs(self, readings: SensorReadings) -> SensorReadings:
         """Return the readings of the legs that are left."""
-        values: dict[str, Any] = {name: getattr(readings, name) for name in CHANNELS if name not in _OF_BODY}
-        for name, each in values.items():
-            if np.shape(each)[:1] == (self._robot.legs,):
-                values[name] = np.asarray(each)[self._legs] - (self._zero if name == "joint_angles" else 0)
+        legs, values = self._robot.legs, dict[str, Any]()
+        for name in CHANNELS:
+            items = None if name in _OF_BODY else as_items(getattr(readings, name), (legs, 3), (legs,))
+            if items is not None:
+                values[name] = [items[leg] for leg in self._legs]
+        if "joint_angles" in values:
+            vectors = map(as_vector, values["joint_angles"])
+            values["joint_angles"] = [
+                vector and (vector[0] - zero, *vector[1:])
+                for vector, zero in zip(vectors, self._zero[:, 0].tolist(), strict=True)
+            ]
         return dataclasses.replace(readings, **values)
 
 
