@@ -177,6 +177,29 @@ def test_a_limitation_that_ends_before_its_command_is_no_unmet_command():
     assert recording.problems == (f"not met in full, {unmet.text()}",)
 
 
+def test_readings_that_were_rejected_for_a_moment_leave_no_command_unmet():
+    class Disturbed(IdealPlant):
+        def step(self, output, dt):
+            bad = 0.5 < output.time < 0.6
+            return dataclasses.replace(super().step(output, dt), attitude=(math.nan if bad else 0.0, 0.0))
+
+    recording = run(RobotController(STRIDER), Disturbed(STRIDER), [(0.0, FORWARD)], duration=2.0)
+    bad, settling = recording.events
+    assert bad.text == "readings: attitude: not finite numbers"
+    assert (bad.time, settling.until) == pytest.approx((0.52, 0.63), abs=0.011)
+    assert recording.ok, recording.problems
+
+
+def test_joint_angles_that_are_not_measured_of_a_leg_are_recorded_as_missing():
+    class Deaf(IdealPlant):
+        def step(self, output, dt):
+            return SensorReadings(joint_angles=[None, *output.angles[1:]])
+
+    recording = run(RobotController(STRIDER), Deaf(STRIDER), [(0.0, FORWARD)], duration=0.1)
+    assert np.isnan(recording.measured_angles[:, 0]).all()
+    assert (recording.measured_angles[:-1, 1:] == recording.motion.angles[:-1, 1:]).all()
+
+
 def test_a_command_that_changes_ends_what_was_not_met_of_it_and_nothing_else():
     controller = RobotController(STRIDER)
     recorder = Recorder(controller)
@@ -186,6 +209,6 @@ def test_a_command_that_changes_ends_what_was_not_met_of_it_and_nothing_else():
     )
     recorder.command(Command(twist=FORWARD))
     recorder.tick(0.01, dataclasses.replace(controller.output, limitations=found), SensorReadings())
-    assert [unmet.limitation for unmet in recorder._unmet.values()] == [found[0]]
+    assert not recorder._unmet
     recorder.command(Command(twist=(0.0, 0.0, 0.0)))
     assert [unmet.limitation for unmet in recorder._unmet.values()] == list(found)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
@@ -12,6 +13,7 @@ from tarsus.control.limitation import Limitation, LimitationKind
 from tarsus.control.loop.recording import Event, Recording, Unmet
 from tarsus.control.readings import SensorReadings
 from tarsus.control.robot_controller import RobotController
+from tarsus.control.sensing.plain_values import as_items, as_vector
 from tarsus.control.states.robot_state import RobotState
 from tarsus.gait.motion import Motion
 from tarsus.gait.spacing import default_foot_distance
@@ -29,7 +31,7 @@ _Key: TypeAlias = tuple[str, str, str, str]
 # A limitation that is absent for less than this is still the same one [s].
 _GAP = 0.1
 _CHANGES = (RobotState.RISING, RobotState.SITTING, RobotState.FOLDING)
-# Limitations of these kinds are no part of a command: they are shortfalls whatever is commanded next.
+# Limitations of these kinds are about no part of a command, and so about all of it.
 _NOT_COMMANDED = (LimitationKind.GROUND, LimitationKind.ATTITUDE, LimitationKind.READINGS)
 
 
@@ -81,7 +83,7 @@ class Recorder:
         if command is self._command:
             return
         for since, _, last, limitation in self._present.values():
-            if limitation.kind not in _NOT_COMMANDED and last > self.time - _GAP:
+            if last > self.time - _GAP:
                 new, old = (_part(each, limitation.kind) for each in (command, self._command))
                 if new is not None and new != old:
                     self._note_unmet(since, limitation)
@@ -130,8 +132,6 @@ class Recorder:
                 since, number, _, _ = known
             self._events[number] = self._events[number]._replace(until=time)
             present[limitation.key] = (since, number, time, limitation)
-            if limitation.kind in _NOT_COMMANDED:
-                self._note_unmet(since, limitation)
         lately = {key: known for key, known in self._present.items() if known[2] > time - _GAP}
         self._present = {**lately, **present}
 
@@ -148,9 +148,8 @@ class Recorder:
         outputs = self._outputs
         twist = np.array([output.twist for output in outputs])
         guard = tuple(output.guard for output in outputs)
-        missing = np.full((self._controller.robot.legs, 3), np.nan)
         # What is measured before a tick belongs to the one before it.
-        measured = [missing if angles is None else angles for angles in (*self._measured, None)]
+        measured = [_vectors(angles, self._controller.robot.legs) for angles in (*self._measured, None)]
         return Recording(
             robot=self._controller.robot,
             name=name,
@@ -161,7 +160,7 @@ class Recorder:
             twist=twist,
             cycle_times=np.array([output.cycle_time for output in outputs]),
             belly=np.array([output.belly for output in outputs]),
-            measured_angles=np.array(measured, dtype=float),
+            measured_angles=np.array(measured),
             states=tuple(str(output.state) for output in outputs),
             activities=tuple(output.activity for output in outputs),
             gaits=tuple(output.gait.name for output in outputs),
@@ -208,8 +207,16 @@ class Recorder:
         )
 
 
+def _vectors(values: Any, legs: int) -> Float[np.ndarray, "legs 3"]:
+    """Return what is measured of the joints of every leg as numbers; NaN where it is no number."""
+    items = as_items(values, (legs, 3)) or [None] * legs
+    return np.array([as_vector(item) or (math.nan,) * 3 for item in items])
+
+
 def _part(command: Command, kind: LimitationKind) -> Any:
     """Return the part of a command that limitations of a kind are about; None leaves it as it is."""
+    if kind in _NOT_COMMANDED:
+        return command
     if kind is LimitationKind.FOOT_TARGET:
         return command.foot_targets or command.foot_velocities
     return getattr(command, kind.value)
