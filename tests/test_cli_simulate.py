@@ -88,6 +88,14 @@ def test_a_video_is_an_mp4_file(tmp_path):
     assert (tmp_path / "walk.mp4").read_bytes()[4:8] == b"ftyp"
 
 
+def test_a_walk_that_stops_at_a_gap_is_not_completed():
+    options = '--scenario "at 0 s: walk 80 mm/s; at 4 s: stop" --sensors camera --seed 1'
+    terrain = "--terrain gaps:width=200,spacing=1000,start=200"
+    code, shown = run(f"simulate strider {options} {terrain}")
+    assert code == 1
+    assert "the robot neither fell nor stalled, but did not do all that was commanded\n  not met in full, " in shown
+
+
 def test_a_scenario_runs_through_the_controller():
     timeline = '--scenario "at 0 s: walk 50 mm/s; at 1.5 s: stop"'
     code, found = run_json(f"simulate strider {timeline} --sensors smart --seed 3")

@@ -86,7 +86,8 @@ def simulate(
     """Simulate a walk in physics (MuJoCo), and compare it with the plan.
 
     A planned walk is executed as it is, without feedback; a scenario runs through the controller, which reads the
-    simulated sensors. The exit code is 0 only if the robot neither fell nor stalled.
+    simulated sensors. The exit code is 0 only if the robot neither fell nor stalled, and every command of a scenario
+    was met in full.
     """
     from tarsus.cli.simulated_run import run_plan, run_timeline, write_run
     from tarsus.cli.viewer import replay, require_screen
@@ -117,7 +118,7 @@ def simulate(
         "terrain": terrain,
         "servos": plant["servos"],
         "sensors": plant["sensors"],
-        **simulation_summary(found.outcome, found.planned),
+        **simulation_summary(found.outcome, found.planned, found.command_problems),
         "assumed": list(found.assumed),
     }
     if not as_json:

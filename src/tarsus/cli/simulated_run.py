@@ -55,6 +55,8 @@ class SimulatedRun:
         Peak and root mean square torque of coxa, femur and tibia that statics predicts [N m].
     assumed : tuple of str
         What plan, model and servos assume.
+    command_problems : tuple of str
+        Commands of a scenario that were not met in full, and interventions of the guard, a line each.
     """
 
     motion: Motion
@@ -63,6 +65,7 @@ class SimulatedRun:
     outcome: Outcome
     planned: tuple[Float[np.ndarray, "3"], Float[np.ndarray, "3"]] | None
     assumed: tuple[str, ...]
+    command_problems: tuple[str, ...] = ()
 
 
 def run_plan(robot: str, options: dict[str, Any], settings: dict[str, Any], progress: Progress) -> SimulatedRun:
@@ -145,6 +148,7 @@ def run_timeline(
         outcome=Outcome.of(trace),
         planned=planned,
         assumed=assumed,
+        command_problems=recording.command_problems,
     )
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -20,7 +21,9 @@ __all__ = ["simulation_summary", "simulation_table", "simulation_verdict"]
 
 
 def simulation_summary(
-    outcome: Outcome, planned: tuple[Float[np.ndarray, "3"], Float[np.ndarray, "3"]] | None
+    outcome: Outcome,
+    planned: tuple[Float[np.ndarray, "3"], Float[np.ndarray, "3"]] | None,
+    command_problems: Sequence[str] = (),
 ) -> dict[str, Any]:
     """Return the numbers of a simulated run, with units in the keys.
 
@@ -30,6 +33,8 @@ def simulation_summary(
         What the robot did.
     planned : (array, shape (3,), array, shape (3,)), optional
         Peak and root mean square torque of coxa, femur and tibia that statics predicts [N m].
+    command_problems : sequence of str
+        `Recording.command_problems` of a scenario.
 
     Returns
     -------
@@ -60,8 +65,8 @@ def simulation_summary(
         "cost_of_transport": _finite(outcome.cost_of_transport),
         "fell_at_s": outcome.fell_at,
         "stalls": list(outcome.stalls),
-        "problems": list(outcome.problems),
-        "ok": outcome.ok,
+        "problems": [*outcome.problems, *command_problems],
+        "ok": outcome.ok and not command_problems,
     }
 
 
@@ -127,4 +132,6 @@ def simulation_verdict(summary: dict[str, Any]) -> str:
     """
     if summary["ok"]:
         return "completed: the robot neither fell nor stalled"
-    return "\n".join(["failed", *(f"  {problem}" for problem in summary["problems"])])
+    stands = summary["fell_at_s"] is None and not summary["stalls"]
+    verdict = "the robot neither fell nor stalled, but did not do all that was commanded" if stands else "failed"
+    return "\n".join([verdict, *(f"  {problem}" for problem in summary["problems"])])

@@ -163,13 +163,18 @@ class Recording:
         return replace(whole, time=whole.time[rows] - whole.time[first], **parts)
 
     @property
-    def problems(self) -> tuple[str, ...]:
-        """What went wrong, a line for each: refused and unmet commands, interventions, infeasible motion."""
+    def command_problems(self) -> tuple[str, ...]:
+        """Refused and unmet commands, and interventions of the guard, a line for each."""
         refused = [f"at {event.time:.2f} s {event.text}" for event in self.events if event.kind == "refused"]
         unmet = [f"not met in full, {each.text()}" for each in self.unmet]
         stopped = [f"guard: {number} x {kind}" for kind, number in self.interventions.items()]
-        bodily = [problem for part in self.standing for problem in part.problems]
-        return tuple(dict.fromkeys([*refused, *unmet, *stopped, *bodily]))
+        return (*refused, *unmet, *stopped)
+
+    @property
+    def problems(self) -> tuple[str, ...]:
+        """What went wrong, a line for each: `command_problems`, and infeasible motion."""
+        bodily = (problem for part in self.standing for problem in part.problems)
+        return tuple(dict.fromkeys((*self.command_problems, *bodily)))
 
     @property
     def ok(self) -> bool:
