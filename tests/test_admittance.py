@@ -138,7 +138,7 @@ def test_invalid_parameters_raise():
     good = {"mass": 1.0, "damping": 1.0, "stiffness": 1.0}
     for name in ("mass", "damping", "stiffness", "travel"):
         for value in (0.0, -1.0, math.nan, math.inf):
-            with pytest.raises(InputError, match=f"{name} is {value}; it must be a positive number"):
+            with pytest.raises(InputError, match=f"admittance: {name} is {value:g}; it must be"):
                 Admittance(**(good | {name: value}))
     with pytest.raises(InputError, match=r"stiffness is 1e\+300 for a mass of 1e-300 kg.*increase the mass"):
         Admittance(mass=1e-300, damping=1.0, stiffness=1e300)

@@ -70,8 +70,9 @@ def test_invalid_arguments_are_rejected():
         Guard(robot, bounds=GuardBounds.of(ring(8)))
     with pytest.raises(InputError, match="the bounds are for 6 legs; 'strider' has 6"):
         Guard(stack_robots([robot, robot]), bounds=GuardBounds.of(robot))
-    with pytest.raises(InputError, match="log_size is 0"):
-        Guard(robot, log_size=0)
+    for size in (0, 2.5):
+        with pytest.raises(InputError, match=f"log_size is {size}; it must be a whole number of at least 1"):
+            Guard(robot, log_size=size)
     with pytest.raises(InputError, match=r"start must be .*: joint angle array 9 values"):
         Guard(robot, start=np.zeros((3, 3)))
     with pytest.raises(InputError, match=r"start must be .*LF tibia: joint angle 5730 deg"):

@@ -13,7 +13,7 @@ from tarsus.kinematics.mass import known_weight
 from tarsus.kinematics.pose import Pose
 from tarsus.load.foot_force import balanced_forces
 from tarsus.representation import represented
-from tarsus.robot.robot import Robot
+from tarsus.robot.robot import Robot, require_robot
 
 if TYPE_CHECKING:
     from jaxtyping import Bool, Float
@@ -162,6 +162,7 @@ class IdealPlant:
     """
 
     def __init__(self, robot: Robot) -> None:
+        require_robot(robot)
         self.robot = robot
         self.environment = Environment(robot)
         self._angles: np.ndarray | None = None

@@ -29,7 +29,7 @@ from tarsus.gait.walk_setup import require_number
 from tarsus.kinematics.leg import forward_kinematics
 from tarsus.kinematics.pose import Pose
 from tarsus.representation import represented
-from tarsus.robot.robot import Robot
+from tarsus.robot.robot import Robot, require_robot
 
 if TYPE_CHECKING:
     from jaxtyping import Float
@@ -92,6 +92,7 @@ class RobotController:
         admittance: Admittance | None = None,
         guard: bool | GuardBounds = True,
     ) -> None:
+        require_robot(robot)
         self.robot = robot
         self.body_height, self.swing_height = body_height, swing_height
         # Of a walk on all legs, and of the present one.

@@ -19,7 +19,7 @@ from tarsus.kinematics.solution import IKSolution
 from tarsus.kinematics.stance import default_body_height, default_stance, default_swing_height
 from tarsus.robot.estimates import MASS_KEYS, estimate_text
 from tarsus.robot.joint_limits import UNKNOWN_SPEED, servo_speeds
-from tarsus.robot.robot import Robot
+from tarsus.robot.robot import Robot, require_robot
 
 if TYPE_CHECKING:
     from jaxtyping import Float
@@ -63,10 +63,7 @@ def require_number(name: str, value: float, *, zero: bool, most: float = math.in
     InputError
         If it is not a number, or out of range.
     """
-    try:
-        number = float(value)
-    except (TypeError, ValueError):
-        raise InputError(f"{name} is {value!r}; it must be a number") from None
+    number = require_float(name, value)
     unit = _UNITS.get(name, "")
     if not 0 <= number < math.inf:
         raise InputError(f"{name} is {number:g}{unit}; it must be a finite number, not negative")
@@ -75,6 +72,25 @@ def require_number(name: str, value: float, *, zero: bool, most: float = math.in
     if number == 0 and not zero:
         raise InputError(f"{name} is 0; it must be greater than 0")
     return number
+
+
+def require_float(name: str, value: float) -> float:
+    """Return a number as a float.
+
+    Parameters
+    ----------
+    name, value : str, float
+        Its name in messages; the number.
+
+    Raises
+    ------
+    InputError
+        If it is not a number.
+    """
+    try:
+        return float(value)
+    except (TypeError, ValueError):
+        raise InputError(f"{name} is {value!r}; it must be a number") from None
 
 
 @dataclass(frozen=True)
@@ -133,6 +149,7 @@ class WalkSetup:
         UnreachableError
             If a leg does not reach the ground at that body height.
         """
+        require_robot(robot)
         if robot.batch_shape:
             raise InputError(f"a walk is planned for a single robot, not for a batch {robot.batch_shape} of designs")
         gait = Gait.named(robot.gait.name, legs=robot.legs) if gait is None else gait
@@ -146,15 +163,16 @@ class WalkSetup:
             else require_number("swing_height", swing_height, zero=True, most=_MOST)
         )
         distance = default_foot_distance(robot) if foot_distance is None else foot_distance
-        height = default_body_height(robot) if body_height is None else body_height
+        height = default_body_height(robot) if body_height is None else require_float("body_height", body_height)
         if not abs(height) <= _MOST:
             raise InputError(f"body_height is {height} m; it must be a finite number, at most {_MOST:g} m")
-        stance = _widened(robot, default_stance(robot, height, swing_height=swing_height), stance_width or 0.0)
+        width = require_float("stance_width", stance_width or 0.0)
+        stance = _widened(robot, default_stance(robot, height, swing_height=swing_height), width)
         return cls(
             robot=robot,
             gait=gait,
             rest=stance * np.array([1.0, 1.0, 0.0]),
-            body_height=float(height),
+            body_height=height,
             swing_height=swing_height,
             body_tilt=_tilt(body_tilt),
             foot_distance=require_number("foot_distance", distance, zero=True),

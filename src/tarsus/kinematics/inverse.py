@@ -11,7 +11,7 @@ from tarsus.errors import InputError
 from tarsus.kinematics.batch_solver import solve_legs
 from tarsus.kinematics.pose import Pose
 from tarsus.kinematics.solution import IKSolution
-from tarsus.robot.robot import Robot
+from tarsus.robot.robot import Robot, require_robot
 
 if TYPE_CHECKING:
     from jaxtyping import Float
@@ -48,6 +48,7 @@ def inverse_kinematics(
     InputError
         If the feet have the wrong shape or are not finite, or `knee` has another value.
     """
+    require_robot(robot)
     if knee not in ("up", "down"):
         raise InputError(f"knee is {knee!r}; it can be 'up' or 'down'")
     xp = namespace(feet, robot.geometry.coxa, *(() if body is None else (body.rotation, body.position)))

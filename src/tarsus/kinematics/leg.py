@@ -29,7 +29,7 @@ from tarsus.arrays import (
 )
 from tarsus.blocks import BLOCK, SMALL, batch_blocks, block_shape, columns
 from tarsus.robot.geometry import LegGeometry
-from tarsus.robot.robot import Robot
+from tarsus.robot.robot import Robot, require_robot
 
 if TYPE_CHECKING:
     from jaxtyping import Float
@@ -57,6 +57,7 @@ def forward_kinematics(robot: Robot, angles: Float[Array, "*#batch legs 3"]) -> 
     InputError
         If the angles have the wrong shape or are not finite.
     """
+    require_robot(robot)
     return _by_blocks(point_parts, robot, angles, (4, 3))
 
 

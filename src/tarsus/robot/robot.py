@@ -22,7 +22,7 @@ from tarsus.robot.shape import JOINTS, OPTIONAL, TAILS, locked
 if TYPE_CHECKING:
     from jaxtyping import Float
 
-__all__ = ["JOINTS", "GaitDefaults", "Robot", "Source", "masses_advice", "stack_robots"]
+__all__ = ["JOINTS", "GaitDefaults", "Robot", "Source", "masses_advice", "require_robot", "stack_robots"]
 
 
 @represented("name", "leg_codes", "batch_shape", "coxa", "femur", "tibia", "limits", "body_mass", "link_mass", "gait")
@@ -243,6 +243,24 @@ class Robot:
                 array = np.asarray(value)
                 changes[name] = np.broadcast_to(array, (*batch, *array.shape[array.ndim - len(tail) :]))[index]
         return self.replace(**changes)
+
+
+def require_robot(robot: object) -> None:
+    """Refuse what is no robot.
+
+    Parameters
+    ----------
+    robot : object
+        Expected: a `Robot`.
+
+    Raises
+    ------
+    InputError
+        If it is not.
+    """
+    if not isinstance(robot, Robot):
+        advice = f"; load_robot({robot!r}) loads one" if isinstance(robot, str) else ""
+        raise InputError(f"robot is {robot!r}; it must be a Robot{advice}")
 
 
 def masses_advice(robot: Robot) -> str:

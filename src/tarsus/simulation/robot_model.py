@@ -16,7 +16,7 @@ import numpy as np
 from tarsus.errors import InputError
 from tarsus.gait.walk_setup import require_number
 from tarsus.load.compliant.foot_contact import POINT_FOOT
-from tarsus.robot.robot import JOINTS, Robot
+from tarsus.robot.robot import JOINTS, Robot, require_robot
 from tarsus.simulation.engine import mujoco_module
 from tarsus.simulation.inertia import BODY_HEIGHT, SECTION, body_inertia, link_inertia, link_step
 from tarsus.simulation.servos.actuators import add_servo
@@ -166,6 +166,7 @@ def model_assumptions(robot: Robot) -> tuple[str, ...]:
 
 
 def _check(robot: Robot) -> None:
+    require_robot(robot)
     if robot.batch_shape:
         raise InputError(f"robot {robot.name!r} is a batch of designs {robot.batch_shape}; expected one robot")
     robot.require_masses()

@@ -14,7 +14,7 @@ from tarsus.control.readings import SensorReadings
 from tarsus.errors import InputError, SimulationError
 from tarsus.kinematics.pose import Pose
 from tarsus.representation import represented
-from tarsus.robot.robot import Robot
+from tarsus.robot.robot import Robot, require_robot
 from tarsus.simulation.engine import mujoco_module
 from tarsus.simulation.initial_state import check_stability, place
 from tarsus.simulation.measurement import Measurement
@@ -97,6 +97,7 @@ class SimulatedPlant:
         servos: Any = "catalogue",
         seed: int = 0,
     ) -> None:
+        require_robot(robot)
         self.robot = robot
         self.terrain: Terrain = Flat() if terrain is None else terrain
         self.sensors = SensorSuite.named(sensors) if isinstance(sensors, str) else sensors
@@ -151,7 +152,7 @@ class SimulatedPlant:
         SimulationError
             If the simulation becomes unstable.
         """
-        angles = _checked(output.angles)
+        angles = _checked(output.angles, self.robot.legs)
         self._mujoco.mj_resetData(self.mj_model, self.mj_data)
         place(self.robot, self.terrain, output, self.mj_model, self.mj_data)
         check_stability(self._table, self.mj_model, self.mj_data)
@@ -198,7 +199,7 @@ class SimulatedPlant:
             raise InputError("the simulated plant has not been started; call start(output) before step(output, dt)")
         if not 0 < dt <= _LONGEST_TICK:
             raise InputError(f"dt is {dt:g} s; it must be greater than 0 and at most {_LONGEST_TICK:g} s")
-        self._timing.command(self._steps, _checked(angles))
+        self._timing.command(self._steps, _checked(angles, self.robot.legs))
         self._time += dt
         self._advance(round(self._time / TIMESTEP) - self._steps)
         return self._sampler.read(self._time, self._exact())
@@ -318,9 +319,12 @@ class SimulatedPlant:
         return {name: channel() for name, channel in self._exact_channels.items()}
 
 
-def _checked(angles: Shaped[np.ndarray, "..."]) -> Shaped[np.ndarray, "..."]:
+def _checked(angles: Shaped[np.ndarray, "..."], legs: int) -> Shaped[np.ndarray, "..."]:
     """Return joint angles in one axis, refusing what is not finite."""
-    flat = np.array(angles, dtype=float).ravel()
+    given = np.array(angles, dtype=float)
+    if given.shape != (legs, 3):
+        raise InputError(f"the commanded angles have shape {given.shape}; expected ({legs}, 3)")
+    flat = given.ravel()
     # Faster than a test of each number; no angle is so large that its square overflows.
     if not math.isfinite(flat @ flat):
         leg, joint = np.argwhere(~np.isfinite(angles))[0].tolist()

@@ -16,6 +16,7 @@ from dataclasses import dataclass
 from functools import cached_property
 
 from tarsus.errors import InputError
+from tarsus.gait.walk_setup import require_number
 
 __all__ = ["Admittance", "AdmittanceFilter"]
 
@@ -51,9 +52,7 @@ class Admittance:
 
     def __post_init__(self) -> None:
         for name in ("mass", "damping", "stiffness", "travel"):
-            value = getattr(self, name)
-            if not 0 < value < math.inf:
-                raise InputError(f"admittance: {name} is {value}; it must be a positive number")
+            require_number(f"admittance: {name}", getattr(self, name), zero=False)
         for name, rate in (("stiffness", self.frequency), ("damping", self.decay)):
             if not rate < _FASTEST:
                 raise InputError(

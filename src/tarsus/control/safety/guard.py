@@ -86,13 +86,13 @@ class Guard:
         self.bounds = GuardBounds.of(robot) if bounds is None else bounds
         if robot.batch_shape or len(self.bounds.limits) != robot.legs:
             raise InputError(f"the bounds are for {len(self.bounds.limits)} legs; {robot.name!r} has {robot.legs}")
-        if log_size < 1:
-            raise InputError(f"log_size is {log_size}; it must be at least 1")
+        if log_size < 1 or log_size % 1:
+            raise InputError(f"log_size is {log_size}; it must be a whole number of at least 1")
         self._robot, self._policy, self._recover = robot, policy, recover
         self._joints = JointMonitor(self.bounds)
         self._feet = FeetMonitor(robot, self.bounds)
         self._clock = GuardClock(self.bounds)
-        self._log = InterventionLog(robot, log_size)
+        self._log = InterventionLog(robot, int(log_size))
         self._state = GuardState.PASSING
         self._time_at_rest = 0.0
         self._sit_down: SitDown | None = None

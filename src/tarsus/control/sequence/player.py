@@ -9,7 +9,7 @@ import numpy as np
 
 from tarsus.control.sequence.sequence import MotionSequence, SequenceSample
 from tarsus.control.sequence.stage import GRID
-from tarsus.errors import InputError
+from tarsus.gait.walk_setup import require_number
 from tarsus.kinematics.pose import Pose
 from tarsus.representation import represented
 
@@ -123,9 +123,7 @@ class SequencePlayer:
         InputError
             If `dt` is negative or not finite.
         """
-        if not 0 <= dt < math.inf:
-            raise InputError(f"dt is {dt} s; it must be a finite number of at least 0")
-        remaining = float(dt)
+        remaining = require_number("dt", dt, zero=True)
         while remaining > 0 and self.rate != self._target_rate:
             interval = min(remaining, _INTERVAL)
             self._advance(interval, self._rate_change(interval))

@@ -71,7 +71,7 @@ class GroundAdaptation:
             require_number(f"ground adaptation: {name}", getattr(self, name), zero=True)
         require_number("ground adaptation: speed", self.speed, zero=False, most=1.0)
         for name in ("cycle_time", "catch_up"):
-            if not 1 <= getattr(self, name) < math.inf:
+            if require_number(f"ground adaptation: {name}", getattr(self, name), zero=False) < 1:
                 raise InputError(f"ground adaptation: {name} is {getattr(self, name)}; it must be finite, at least 1")
 
 

@@ -25,7 +25,7 @@ from tarsus.control.workspace.stance_limits import shifted_limits, velocity_limi
 from tarsus.errors import InputError, UnreachableError
 from tarsus.gait.stance.stability import StabilityCheck, support_sets
 from tarsus.gait.stance.velocity_limits import VelocityLimits, with_stroke_limits
-from tarsus.gait.walk_setup import WalkSetup, require_number
+from tarsus.gait.walk_setup import WalkSetup, require_float, require_number
 from tarsus.robot.joint_limits import JointLimits
 from tarsus.robot.robot import Robot
 
@@ -81,7 +81,7 @@ class TransitionPlanner:
         UnreachableError
             If the robot can't stand and step so.
         """
-        if not math.isfinite(stance_width):
+        if not math.isfinite(require_float("stance_width", stance_width)):
             raise InputError(f"stance_width is {stance_width} m; it must be a finite number")
         if cycle_time is not None:
             require_number("cycle_time", cycle_time, zero=False)

@@ -1,0 +1,63 @@
+"""What is given in place of a robot or a number is refused by its name."""
+
+import numpy as np
+import pytest
+
+import tarsus
+from tarsus.control.pose.admittance import Admittance
+from tarsus.control.sequence import SequencePlayer
+from tarsus.control.startup import sit_down
+from tarsus.errors import InputError
+from tarsus.robot.file import load_robot
+from tarsus.simulation import SimulatedPlant
+
+STRIDER = load_robot("strider")
+
+
+@pytest.mark.parametrize(
+    "made",
+    [
+        tarsus.RobotController,
+        tarsus.WalkController,
+        tarsus.IdealPlant,
+        SimulatedPlant,
+        lambda robot: tarsus.plan_walk(robot, None, tarsus.straight_path(0.1)),
+        lambda robot: tarsus.inverse_kinematics(robot, np.zeros((6, 3))),
+        lambda robot: tarsus.forward_kinematics(robot, np.zeros((6, 3))),
+    ],
+)
+def test_a_name_is_no_robot(made):
+    with pytest.raises(InputError, match=r"robot is 'strider'; it must be a Robot; load_robot\('strider'\) loads one"):
+        made("strider")
+    with pytest.raises(InputError, match=r"robot is 3; it must be a Robot$"):
+        made(3)
+
+
+def _player():
+    return SequencePlayer(sit_down(STRIDER, tarsus.WalkController(STRIDER).angles))
+
+
+@pytest.mark.parametrize(
+    ("name", "made"),
+    [
+        ("ground adaptation: cycle_time", lambda: tarsus.GroundAdaptation(cycle_time="x")),
+        ("admittance: mass", lambda: Admittance(mass="x", damping=1.0, stiffness=1.0)),
+        ("stance_width", lambda: tarsus.WalkController(STRIDER, stance_width="x")),
+        ("body_height", lambda: tarsus.WalkController(STRIDER, body_height="x")),
+        ("dt", lambda: _player().step("x")),
+        (
+            "jitter",
+            lambda: tarsus.run(tarsus.RobotController(STRIDER), tarsus.IdealPlant(STRIDER), [], jitter="x"),
+        ),
+    ],
+)
+def test_a_text_is_no_number(name, made):
+    with pytest.raises(InputError, match=f"^{name} is 'x'; it must be a number$"):
+        made()
+
+
+def test_a_plant_takes_angles_of_all_its_legs():
+    plant = SimulatedPlant(STRIDER, servos="ideal")
+    plant.start(tarsus.RobotController(STRIDER).output)
+    with pytest.raises(InputError, match=r"the commanded angles have shape \(4, 3\); expected \(6, 3\)"):
+        plant.execute(np.zeros((4, 3)), 0.01)
