@@ -199,6 +199,9 @@ def test_other_physics_ends_driving():
     assert not asked.session.driving
     asked.all("drive", on=True)
     assert asked.session.frame(DT).physics is None
+    # Options of physics that is off are none of the driven robot's.
+    asked.all("physics", physics={"on": False, "terrain": {"kind": "blocks"}})
+    assert asked.session.driving
 
 
 def test_a_robot_without_masses_is_not_simulated():

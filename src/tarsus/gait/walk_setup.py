@@ -24,7 +24,7 @@ from tarsus.robot.robot import Robot, require_robot
 if TYPE_CHECKING:
     from jaxtyping import Float
 
-__all__ = ["HEADING_FRAME", "WalkSetup", "require_number"]
+__all__ = ["HEADING_FRAME", "WalkSetup", "require_float", "require_number"]
 
 HEADING_FRAME = "the heading frame (on the ground below the body)"
 """Name of the frame of feet that are given without a pose of the body in the ground plane."""

@@ -21,6 +21,10 @@ from tarsus.studio.walks import fewer_for_more_legs
 __all__ = ["loads_message", "loads_of", "servos_message"]
 
 _MOST_SIZED = 3000
+_VERTICAL = (
+    "contact forces are vertical; feet that press against each other through friction load mainly the coxae more: "
+    "tarsus loads adds it"
+)
 
 
 def loads_of(motion: Motion, options: LoadOptions) -> JointLoads:
@@ -89,7 +93,7 @@ def loads_message(found: JointLoads, options: LoadOptions, *, id: int) -> LoadsM
         mean_current_a=currents["mean_a"],
         battery_min=currents["battery_min"],
         supply_warning=currents["warning"],
-        assumed=summary["assumed"],
+        assumed=[*summary["assumed"], _VERTICAL],
     )
 
 

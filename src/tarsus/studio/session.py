@@ -286,7 +286,7 @@ class Session:
     def _physics(self, message: ask.SetPhysics) -> Answers:
         state = self.state.model_copy(update={"physics": message.physics})
         answers = list(self._views.terrain(state, id=message.id))
-        if message.physics != self.state.physics:
+        if message.physics != self.state.physics and (message.physics.on or self.state.physics.on):
             # The client starts driving anew where it sees other physics.
             self._live.end_driving()
         self._history.change(state, commit=message.commit)

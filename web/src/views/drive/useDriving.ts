@@ -1,4 +1,4 @@
-import { useEffect, useRef } from "react";
+import { useEffect, useRef, useState } from "react";
 
 import { isTyping } from "../../app/useShortcuts";
 import type { Command } from "../../protocol";
@@ -39,6 +39,19 @@ export interface Sticks {
   turn: (x: number) => void;
 }
 
+/** How often the physics have changed: also where they are the same again before the page is drawn. */
+function useChangesOfPhysics(): number {
+  const [changes, setChanges] = useState(0);
+  useEffect(
+    () =>
+      useStudio.subscribe((now, before) => {
+        if (keyOf(now.state?.physics) !== keyOf(before.state?.physics)) setChanges((count) => count + 1);
+      }),
+    [],
+  );
+  return changes;
+}
+
 /**
  * Drive the robot while the view is open: keys, sticks and gamepads together set the twist. Another `attempt` starts it
  * anew.
@@ -49,7 +62,7 @@ export function useDriving(settings: Settings, attempt: number): Sticks {
   const latest = useRef(settings);
   const robot = useStudio((studio) => studio.robot?.id);
   const open = useStudio((studio) => studio.link.kind === "open");
-  const physics = useStudio((studio) => keyOf(studio.state?.physics));
+  const physics = useChangesOfPhysics();
 
   // A new session (after a broken connection), another robot and other physics have to be started. Before the first command is sent.
   useEffect(() => {
