@@ -1,6 +1,8 @@
 """Legs that fail: found by measured joint angles or told, and what the robot does without them."""
 
 import dataclasses
+import re
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -252,6 +254,14 @@ def test_a_limp_servo_is_found_in_physics_and_the_robot_walks_on():
     assert [(each.leg, each.joint) for each in found] == [("middle left", "femur")]
     assert "failed" in found[0].text()
     assert not controller.output.contacts[1]
+
+
+@pytest.mark.no_cover
+def test_the_example_of_the_page_finds_its_limp_servo(capsys):
+    page = (Path(__file__).parents[1] / "docs/ground.md").read_text(encoding="utf-8")
+    (example,) = (block for block in re.findall(r"```python\n(.*?)```", page, flags=re.DOTALL) if "limp" in block)
+    exec(compile(example, "docs/ground.md", "exec"), {})
+    assert capsys.readouterr().out == "{1: 1}\n"
 
 
 @pytest.mark.no_cover
