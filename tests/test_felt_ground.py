@@ -284,12 +284,12 @@ def test_on_rough_ground_cycles_get_longer_feet_closer_and_fast_walks_slower(spe
 def test_odometry_makes_up_for_what_the_legs_lose():
     odometry = LegOdometry(STRIDER)
     angles = WalkController(STRIDER).angles
-    still = {"tilt": (0.0, 0.0), "yaw": 0.0}
+    still = ValidReadings(joint_angles=angles.tolist())
     for _ in range(50):
-        correction = odometry.step(angles.tolist(), range(6), 0.1 + 0j, 0.01, **still)
+        correction = odometry.step(still, range(6), 0.1 + 0j, 0.01, yaw=0.0)
     # Legs that stand still: all of the way is lost, and the correction is at its bound.
     assert correction == pytest.approx(0.025)
-    assert odometry.step(None, range(6), 0.1 + 0j, 0.01, **still) == 0j
+    assert odometry.step(ValidReadings(), range(6), 0.1 + 0j, 0.01, yaw=0.0) == 0j
     assert odometry.behind == 0j
 
 
@@ -298,7 +298,8 @@ def test_the_odometry_of_a_tilted_body_is_over_the_ground():
     for tick in range(30):
         body = tarsus.Pose.from_rpy(0.1, -0.2, 0.0, (0.001 * tick, 0.0, float(walk.body.position[2])))
         angles = np.asarray(tarsus.inverse_kinematics(STRIDER, walk.feet, body).angles)
-        odometry.step(angles.tolist(), range(6), 0.1 + 0j, 0.01, tilt=(0.1, -0.2), yaw=0.0)
+        valid = ValidReadings(joint_angles=angles.tolist(), attitude=(0.1, -0.2))
+        odometry.step(valid, range(6), 0.1 + 0j, 0.01, yaw=0.0)
     # Balls that do not roll as the legs turn are 2 % of the way; in the frame of the body it would go aside by as much.
     assert abs(odometry.behind) < 6e-4
     assert abs(odometry.behind.imag) < 2e-5
@@ -312,7 +313,8 @@ def test_a_foot_that_slides_is_told_by_the_others():
         moved = tarsus.Pose.from_rpy(yaw=0.002 * tick, position=(0.001 * tick, 0.0, 0.0)) @ body
         feet[0, 0] += 0.0005
         angles = tarsus.inverse_kinematics(STRIDER, feet, moved).angles
-        odometry.step(np.asarray(angles).tolist(), range(6), 0.1 + 0j, 0.01, tilt=(0.0, 0.0), yaw=0.002 * tick)
+        valid = ValidReadings(joint_angles=np.asarray(angles).tolist())
+        odometry.step(valid, range(6), 0.1 + 0j, 0.01, yaw=0.002 * tick)
     assert odometry.slip[0] == max(odometry.slip)
     # A sixth of a foot's slip is taken for motion of the body, and some for its turn.
     assert 0.025 < odometry.slip[0] < 0.05
@@ -323,7 +325,7 @@ def test_a_foot_that_slides_is_told_by_the_others():
     assert found.leg == "front left"
     assert found.text().startswith("ground: 3")
     assert found.text().endswith("mm/s, bound 30 mm/s; front left: the foot slips")
-    odometry.step(np.asarray(angles).tolist(), [0, 1], 0.1 + 0j, 0.2, tilt=(0.0, 0.0), yaw=0.0)
+    odometry.step(valid, [0, 1], 0.1 + 0j, 0.2, yaw=0.0)
     assert max(odometry.slip) == 0.0
 
 

@@ -10,6 +10,7 @@ from sample_gait_states import moment_of, rest_of, setup_of
 from tarsus import Pose, forward_kinematics, inverse_kinematics
 from tarsus.control.command import Command
 from tarsus.control.pose.foot_rolling import FootRolling
+from tarsus.control.readings import ValidReadings
 from tarsus.control.robot_controller import RobotController
 from tarsus.control.sensing.leg_odometry import LegOdometry
 from tarsus.control.walk.joint_solver import JointSolver
@@ -154,7 +155,7 @@ def test_odometry_knows_that_balls_roll():
     feet, angles, position = w.feet, w.angles, w.body.position
     for _ in range(40):
         for odometry in (rolling, sliding):
-            odometry.step(angles.tolist(), range(6), speed * 1j, dt, tilt=(0.0, 0.0), yaw=0.0)
+            odometry.step(ValidReadings(joint_angles=angles.tolist()), range(6), speed * 1j, dt, yaw=0.0)
         # The body moves sideways over feet that roll.
         position = position + np.array([0, speed * dt, 0])
         before, step = angles, np.zeros((6, 3))

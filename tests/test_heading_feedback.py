@@ -8,9 +8,14 @@ import pytest
 
 import tarsus
 from tarsus.control.pose.heading_feedback import HeadingFeedback
+from tarsus.control.readings import ValidReadings
 from tarsus.simulation import SensorSuite, SimulatedPlant
 
 DT = 0.04
+
+
+def rates(*about, attitude=(0.0, 0.0)):
+    return ValidReadings(angular_rates=about, attitude=attitude)
 
 
 def turned(seconds, *, slips, commanded=0.0, offset=0.0, heading=None, yaw=0.0):
@@ -19,7 +24,7 @@ def turned(seconds, *, slips, commanded=0.0, offset=0.0, heading=None, yaw=0.0):
     for _ in range(round(seconds / DT)):
         rate = commanded + slips + heading.rate
         yaw += rate * DT
-        heading.step((0.0, 0.0, rate + offset), commanded, DT, tilt=(0.0, 0.0), yaw=pose, rests=False)
+        heading.step(rates(0.0, 0.0, rate + offset), commanded, DT, yaw=pose, rests=False)
     return yaw
 
 
@@ -35,7 +40,7 @@ def test_a_body_that_has_slipped_turns_back(commanded):
 def test_the_offset_of_the_rates_is_learnt_at_rest_and_turns_the_body_otherwise(at_rest, least, most):
     heading, offset = HeadingFeedback(), math.radians(0.2)
     for _ in range(round(at_rest / DT)):
-        heading.step((0.0, 0.0, offset), 0.0, DT, tilt=(0.0, 0.0), yaw=0.0, rests=True)
+        heading.step(rates(0.0, 0.0, offset), 0.0, DT, yaw=0.0, rests=True)
     assert least <= -turned(60.0, slips=0.0, offset=offset, heading=heading) <= most
 
 
@@ -47,17 +52,17 @@ def test_the_rate_and_what_is_made_up_for_are_bounded():
 
 def test_a_body_pose_that_turns_is_no_error():
     heading = HeadingFeedback()
-    heading.step((0.0, 0.0, 0.0), 0.0, DT, tilt=(0.0, 0.0), yaw=0.0, rests=False)
+    heading.step(rates(0.0, 0.0, 0.0), 0.0, DT, yaw=0.0, rests=False)
     for tick in range(50):
         yaw = 0.01 * (tick + 1)
-        heading.step((0.0, 0.0, 0.01 / DT), 0.0, DT, tilt=(0.0, 0.0), yaw=yaw, rests=False)
+        heading.step(rates(0.0, 0.0, 0.01 / DT), 0.0, DT, yaw=yaw, rests=False)
     assert heading.behind == pytest.approx(0.0, abs=1e-12)
 
 
 def test_a_body_pose_that_turns_slowly_at_rest_is_no_offset_of_the_rates():
     heading = HeadingFeedback()
     for tick in range(100):
-        heading.step((0.0, 0.0, 0.015), 0.0, DT, tilt=(0.0, 0.0), yaw=0.015 * DT * tick, rests=True)
+        heading.step(rates(0.0, 0.0, 0.015), 0.0, DT, yaw=0.015 * DT * tick, rests=True)
     assert turned(20.0, slips=0.0, heading=heading, yaw=0.015 * DT * 99) == pytest.approx(0.0, abs=5e-3)
 
 
@@ -67,14 +72,14 @@ def test_a_body_pose_that_was_turned_before_or_while_the_robot_was_carried_is_no
     if carried:
         turned(1.0, slips=0.0, heading=heading)
         heading.forget()
-    heading.step((0.0, 0.0, 0.0), 0.0, DT, tilt=(0.0, 0.0), yaw=0.3, rests=False)
+    heading.step(rates(0.0, 0.0, 0.0), 0.0, DT, yaw=0.3, rests=False)
     assert (heading.behind, heading.rate) == (0.0, 0.0)
 
 
 def test_rates_of_a_tilted_body_are_those_about_the_vertical():
     roll, pitch, heading = 0.3, -0.2, HeadingFeedback()
     along_body = tarsus.Pose.from_rpy(roll, pitch, 0.4).rotation.T @ np.array([0.0, 0.0, 0.25])
-    heading.step(tuple(along_body), 0.25, DT, tilt=(roll, pitch), yaw=0.0, rests=False)
+    heading.step(rates(*along_body, attitude=(roll, pitch)), 0.25, DT, yaw=0.0, rests=False)
     assert heading.behind == pytest.approx(0.0, abs=1e-12)
 
 
@@ -82,16 +87,16 @@ def test_a_robot_at_rest_does_not_turn_and_goes_on_later():
     heading = HeadingFeedback()
     turned(1.0, slips=0.1, heading=heading)
     behind = heading.behind
-    heading.step((0.0, 0.0, 0.3), 0.0, DT, tilt=(0.0, 0.0), yaw=0.0, rests=True)
+    heading.step(rates(0.0, 0.0, 0.3), 0.0, DT, yaw=0.0, rests=True)
     assert (heading.behind, heading.rate) == (pytest.approx(behind, rel=0.01), 0.0)
     for _ in range(round(40.0 / DT)):
-        heading.step((0.0, 0.0, 0.0), 0.0, DT, tilt=(0.0, 0.0), yaw=0.0, rests=True)
+        heading.step(rates(0.0, 0.0, 0.0), 0.0, DT, yaw=0.0, rests=True)
     assert abs(heading.behind) < 0.05 * abs(behind)
     turned(1.0, slips=0.1, heading=heading)
-    heading.step((0.0, 0.0, 0.0), 0.0, DT, tilt=(0.0, 0.0), yaw=0.0, rests=True)
-    heading.step((0.0, 0.0, 0.0), 0.0, DT, tilt=(0.0, 0.0), yaw=0.0, rests=False)
+    heading.step(rates(0.0, 0.0, 0.0), 0.0, DT, yaw=0.0, rests=True)
+    heading.step(rates(0.0, 0.0, 0.0), 0.0, DT, yaw=0.0, rests=False)
     assert heading.rate < 0.0
-    heading.step(None, 0.0, DT, tilt=(0.0, 0.0), yaw=0.0, rests=False)
+    heading.step(ValidReadings(), 0.0, DT, yaw=0.0, rests=False)
     assert (heading.behind, heading.rate) == (0.0, 0.0)
 
 

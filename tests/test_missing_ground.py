@@ -9,6 +9,7 @@ from sample_gait_states import begun, rest_of, setup_of
 from sample_robots import halved
 from tarsus.control.limitation import LimitationKind
 from tarsus.control.limiter.protocol import TwistGrant, TwistRequest
+from tarsus.control.readings import ValidReadings
 from tarsus.control.sensing.leg_odometry import LegOdometry
 from tarsus.control.terrain.foot_contacts import FootContacts, Search
 from tarsus.control.terrain.ground_contact import met_ground
@@ -273,11 +274,12 @@ def test_feet_over_their_commands_are_known_where_angles_are_measured():
     robot = tarsus.load_robot("strider")
     odometry, g, commanded = LegOdometry(robot), robot.geometry, np.zeros((6, 3))
     # The legs are straight out; measured, they are turned up at their femur joints.
-    higher = [(0.0, 0.1, 0.0)] * 6
+    higher = ValidReadings(joint_angles=((0.0, 0.1, 0.0),) * 6)
     rise = (g.femur[0] + g.tibia[0]) * np.sin(0.1)
     assert odometry.raised([0, 3], higher, commanded) == pytest.approx({0: rise, 3: rise})
-    assert odometry.raised([0, 3], [None, *higher[1:]], commanded) == pytest.approx({3: rise})
-    assert odometry.raised([0, 3], None, commanded) == {}
+    unknown = ValidReadings(joint_angles=(None, *higher.joint_angles[1:]))
+    assert odometry.raised([0, 3], unknown, commanded) == pytest.approx({3: rise})
+    assert odometry.raised([0, 3], ValidReadings(), commanded) == {}
 
 
 @pytest.mark.no_cover

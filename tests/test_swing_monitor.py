@@ -6,6 +6,7 @@ from collections import deque
 import numpy as np
 import pytest
 
+from tarsus.control.readings import ValidReadings
 from tarsus.control.sensing.swing_monitor import SwingMonitor
 
 DT = 0.01
@@ -25,7 +26,7 @@ def monitored(lag: float, stops_at: float, *, until: float = 4.0, noise: float =
         angles = [swung(time - lag)] * 6
         angles[2] = swung(min(time, stops_at) - lag)
         measured = [(angle + noise * random.standard_normal(), 0.0, 0.0) for angle in angles]
-        for leg in monitor.step([swung(time)] * 6, measured, DT, down):
+        for leg in monitor.step([swung(time)] * 6, ValidReadings(joint_angles=measured), DT, down):
             found.setdefault(leg, time)
     return found
 
@@ -45,8 +46,8 @@ def test_feet_that_stand_and_joints_that_are_not_measured_tell_nothing():
     monitor = SwingMonitor()
     for tick in range(100):
         commanded = [swung(tick * DT)] * 6
-        assert monitor.step(commanded, None, DT, AIR) == []
-        assert monitor.step(commanded, [None] * 6, DT, AIR) == []
+        assert monitor.step(commanded, ValidReadings(), DT, AIR) == []
+        assert monitor.step(commanded, ValidReadings(joint_angles=(None,) * 6), DT, AIR) == []
 
 
 def test_a_soft_servo_that_swings_about_its_command_is_not_stopped():
@@ -58,7 +59,8 @@ def test_a_soft_servo_that_swings_about_its_command_is_not_stopped():
         for _ in range(10):
             speed += DT / 10 * (3000.0 * (sent[0] - angle) - 60.0 * speed)
             angle += DT / 10 * speed
-        assert monitor.step([commanded] * 6, [(angle, 0.0, 0.0)] * 6, DT, AIR) == []
+        valid = ValidReadings(joint_angles=((angle, 0.0, 0.0),) * 6)
+        assert monitor.step([commanded] * 6, valid, DT, AIR) == []
 
 
 @pytest.mark.parametrize("lag", [0.01, 0.03])
@@ -69,5 +71,5 @@ def test_a_leg_that_turns_around_before_its_lag_is_learnt_is_not_stopped(lag):
 
     monitor = SwingMonitor()
     for tick in range(30):
-        measured = [(angle(tick * DT - lag), 0.0, 0.0)] * 6
-        assert monitor.step([angle(tick * DT)] * 6, measured, DT, [tick < 20] * 6) == []
+        valid = ValidReadings(joint_angles=((angle(tick * DT - lag), 0.0, 0.0),) * 6)
+        assert monitor.step([angle(tick * DT)] * 6, valid, DT, [tick < 20] * 6) == []

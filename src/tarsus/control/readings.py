@@ -9,9 +9,10 @@ from typing import Any, NamedTuple, TypeAlias
 from tarsus.gait.ground_heights import GroundHeights
 from tarsus.representation import represented
 
-__all__ = ["CHANNELS", "SensorReadings", "ValidReadings", "Vector"]
+__all__ = ["CHANNELS", "RollPitch", "SensorReadings", "ValidReadings", "Vector"]
 
 Vector: TypeAlias = tuple[float, float, float]
+RollPitch: TypeAlias = tuple[float, float]
 
 
 @represented()
@@ -118,7 +119,7 @@ class ValidReadings(NamedTuple):
     contacts: tuple[bool | None, ...] | None = None
     forces: tuple[Vector | None, ...] | None = None
     torques: tuple[Vector | None, ...] | None = None
-    attitude: tuple[float, float] | None = None
+    attitude: RollPitch | None = None
     angular_rates: Vector | None = None
     ground: GroundHeights | None = None
     ground_age: float = 0.0

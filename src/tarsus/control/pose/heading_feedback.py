@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from tarsus.control.readings import Vector
+from tarsus.control.readings import ValidReadings
 
 __all__ = ["HeadingFeedback"]
 
@@ -31,30 +31,26 @@ class HeadingFeedback:
         self.behind, self.rate, self._offset = 0.0, 0.0, 0.0
         self._yaw: float | None = None
 
-    def step(
-        self, rates: Vector | None, commanded: float, dt: float, *, tilt: tuple[float, float], yaw: float, rests: bool
-    ) -> None:
+    def step(self, valid: ValidReadings, commanded: float, dt: float, *, yaw: float, rests: bool) -> None:
         """Take in angular rates.
 
         Parameters
         ----------
-        rates : (x, y, z), or None
-            Measured angular velocity along the body's axes [rad/s]; without it, nothing is made up for.
+        valid : ValidReadings
+            The readings; without angular rates, nothing is made up for.
         commanded, dt : float, float
             Rate at which the walk turns [rad/s]; time since the last step [s].
-        tilt : (roll, pitch)
-            Of the body against gravity [rad].
         yaw : float
             Of the body in the heading frame, as commanded [rad]: turning there is no error.
         rests : bool
             Whether the robot is to stand still: it does not turn then, and what is measured is the offset of the rates.
         """
         turned, self._yaw = 0.0 if self._yaw is None else yaw - self._yaw, yaw
-        if rates is None:
+        if valid.angular_rates is None:
             self.behind = self.rate = 0.0
             return
-        roll, pitch = tilt
-        measured = (math.sin(roll) * rates[1] + math.cos(roll) * rates[2]) / math.cos(pitch) - turned / dt
+        (roll, pitch), (_, about_y, about_z) = valid.attitude or (0.0, 0.0), valid.angular_rates
+        measured = (math.sin(roll) * about_y + math.cos(roll) * about_z) / math.cos(pitch) - turned / dt
         if rests:
             self.rate, self.behind = 0.0, self.behind * (1 - dt / _MEMORY)
             if abs(measured) < _STILL:

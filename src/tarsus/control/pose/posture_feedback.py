@@ -6,6 +6,7 @@ import math
 from collections.abc import Sequence
 from typing import Literal, NamedTuple, TypeAlias
 
+from tarsus.control.readings import RollPitch
 from tarsus.errors import InputError
 from tarsus.gait.foot_plane import FootPlane
 
@@ -109,7 +110,7 @@ class PostureFeedback:
     def rates(
         self,
         plane: FootPlane,
-        tilt: tuple[float, float] | None,
+        tilt: RollPitch | None,
         velocity: complex,
         *,
         feet: Sequence[tuple[complex, float]],

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from tarsus.control.readings import Vector
+from tarsus.control.readings import RollPitch, Vector
 from tarsus.control.sensing.channel import Channel
 from tarsus.control.sensing.plain_values import as_items, as_number, as_vector
 
@@ -25,10 +25,10 @@ class AttitudeChannel(Channel):
     def __init__(self) -> None:
         super().__init__(["attitude"])
         # The last reading within the greatest tilt, accepted or not, and when it was read.
-        self._last: tuple[float, float] | None = None
+        self._last: RollPitch | None = None
         self._read = 0.0
 
-    def read(self, value: Any, rejected: list[str]) -> tuple[float, float] | None:
+    def read(self, value: Any, rejected: list[str]) -> RollPitch | None:
         """Return roll and pitch if they are accepted [rad].
 
         Parameters
@@ -40,7 +40,7 @@ class AttitudeChannel(Channel):
         """
         return self._accepted(0, self._checked(value), rejected)
 
-    def _checked(self, value: Any) -> tuple[float, float] | str:
+    def _checked(self, value: Any) -> RollPitch | str:
         """Return a reading, or what is wrong with it; remember it if it is within the greatest tilt."""
         parts = as_items(value, (2,))
         if parts is None:

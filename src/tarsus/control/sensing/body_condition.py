@@ -6,6 +6,7 @@ import math
 from collections.abc import Sequence
 
 from tarsus.control.limitation import Limitation, LimitationKind
+from tarsus.control.readings import RollPitch
 
 __all__ = ["BodyCondition"]
 
@@ -39,9 +40,7 @@ class BodyCondition:
         """Whether the robot is held in the air: feet do not search the ground."""
         return self.airborne > _IN_AIR
 
-    def step(
-        self, touching: Sequence[bool], attitude: tuple[float, float] | None, dt: float, *, held: bool = True
-    ) -> None:
+    def step(self, touching: Sequence[bool], attitude: RollPitch | None, dt: float, *, held: bool) -> None:
         """Take in contacts and attitude of a tick.
 
         Parameters
@@ -71,8 +70,6 @@ class BodyCondition:
         if self.in_air:
             found.append(Limitation(kind=LimitationKind.GROUND, cause="no foot touches it: the robot is in the air"))
         if self.fallen:
-            cause = "the robot has fallen"
-            found.append(
-                Limitation(kind=LimitationKind.ATTITUDE, cause=cause, asked=0.0, granted=self.tilt, bound=_FALLEN)
-            )
+            kind, cause = LimitationKind.ATTITUDE, "the robot has fallen"
+            found.append(Limitation(kind=kind, cause=cause, asked=0.0, granted=self.tilt, bound=_FALLEN))
         return found

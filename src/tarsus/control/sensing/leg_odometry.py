@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from tarsus.control.limitation import Limitation, LimitationKind
-from tarsus.control.readings import Vector
+from tarsus.control.readings import ValidReadings
 from tarsus.gait.stance.stance_geometry import rotation_rows
 from tarsus.kinematics.scalar_solver import ScalarSolver
 from tarsus.robot.robot import Robot
@@ -62,36 +62,25 @@ class LegOdometry:
         kind, name = LimitationKind.GROUND, self._names[self.slip.index(slip)]
         return [Limitation(kind=kind, cause=_CAUSE, leg=name, granted=slip, bound=_SLIPS)] if slip > _SLIPS else []
 
-    def step(
-        self,
-        angles: Sequence[Vector | None] | None,
-        bears: Sequence[int],
-        velocity: complex,
-        dt: float,
-        *,
-        tilt: tuple[float, float],
-        yaw: float,
-    ) -> complex:
+    def step(self, valid: ValidReadings, bears: Sequence[int], velocity: complex, dt: float, *, yaw: float) -> complex:
         """Return the velocity that makes up for what is missing, in the heading frame [m/s].
 
         Parameters
         ----------
-        angles : sequence of ((coxa, femur, tibia) or None), or None
-            Measured joint angles [rad]; without all of them nothing is corrected.
+        valid : ValidReadings
+            The readings; without the joint angles of all legs nothing is corrected.
         bears : sequence of int
             Legs whose feet bear load.
         velocity, dt : complex, float
             Commanded velocity of the body in the heading frame [m/s]; time since the last tick [s].
-        tilt : (roll, pitch)
-            Of the body against gravity [rad].
         yaw : float
             Of the body in the heading frame [rad].
         """
-        measured = [each for each in angles or () if each is not None]
+        measured = [each for each in valid.joint_angles or () if each is not None]
         if len(measured) < len(self._mounts):
             self.behind, self._before = 0j, {}
             return 0j
-        rotation = rotation_rows(*tilt, yaw)
+        rotation = rotation_rows(*(valid.attitude or (0.0, 0.0)), yaw)
         feet = [complex(x, y) for x, y, _ in self._solver.feet(measured, rotation)]
         before, self._before, over_feet = self._before, {}, dict[int, complex]()
         for leg in bears:
@@ -113,24 +102,22 @@ class LegOdometry:
         wanted, most = _GAIN * self.behind, _MOST * abs(velocity)
         return wanted * min(1.0, most / max(abs(wanted), 1e-12))
 
-    def raised(
-        self, legs: Sequence[int], measured: Sequence[Vector | None] | None, commanded: Float[np.ndarray, "legs 3"]
-    ) -> dict[int, float]:
+    def raised(self, legs: list[int], valid: ValidReadings, angles: Float[np.ndarray, "legs 3"]) -> dict[int, float]:
         """Return by how much feet are higher than commanded, of those of some legs whose angles are measured [m].
 
         Parameters
         ----------
-        legs : sequence of int
+        legs : list of int
             The legs.
-        measured : sequence of ((coxa, femur, tibia) or None), or None
-            Measured joint angles [rad].
-        commanded : array, shape (legs, 3)
+        valid : ValidReadings
+            The readings.
+        angles : array, shape (legs, 3)
             Commanded joint angles [rad].
         """
+        measured, wanted = valid.joint_angles, angles.tolist()
         if not (legs and measured):
             return {}
-        wanted = commanded.tolist()
-        found = self._solver.feet([each or angles for each, angles in zip(measured, wanted, strict=True)])
+        found = self._solver.feet([each or asked for each, asked in zip(measured, wanted, strict=True)])
         feet = list(zip(found, self._solver.feet(wanted), strict=True))
         return {leg: feet[leg][0][2] - feet[leg][1][2] for leg in legs if measured[leg] is not None}
 

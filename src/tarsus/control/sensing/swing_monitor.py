@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections import deque
 from collections.abc import Sequence
 
-from tarsus.control.readings import Vector
+from tarsus.control.readings import ValidReadings
 
 __all__ = ["USUAL_LAG", "SwingMonitor"]
 
@@ -33,9 +33,7 @@ class SwingMonitor:
     def __init__(self) -> None:
         self.lag, self._lag, self._usual, self._commanded = 0.0, _LONGEST_LAG, 0.0, deque[list[float]]()
 
-    def step(
-        self, commanded: list[float], measured: Sequence[Vector | None] | None, dt: float, down: Sequence[bool]
-    ) -> list[int]:
+    def step(self, commanded: list[float], valid: ValidReadings, dt: float, down: Sequence[bool]) -> list[int]:
         """Return the legs in the air that are stopped, by the angles of their coxa joints that were commanded last."""
         commands = self._commanded
         stopped: list[int] = []
@@ -46,7 +44,7 @@ class SwingMonitor:
         ticks, share = divmod(self._lag / dt, 1.0)
         newer, older = commands[int(ticks)], commands[int(ticks) + 1]
         lag, usual = self._lag, self._usual
-        for leg, angles in enumerate(measured or ()):
+        for leg, angles in enumerate(valid.joint_angles or ()):
             if angles is None or down[leg]:
                 continue
             angle, step = angles[0], older[leg] - newer[leg]

@@ -13,7 +13,7 @@ from tarsus.control.limitation import Limitation, LimitationKind
 from tarsus.control.limiter.stopped_body import StoppedBody
 from tarsus.control.pose.heading_feedback import HeadingFeedback
 from tarsus.control.pose.posture_feedback import Levelling, PostureFeedback, PostureRates
-from tarsus.control.readings import ValidReadings
+from tarsus.control.readings import RollPitch, ValidReadings
 from tarsus.control.sensing.leg_odometry import LegOdometry
 from tarsus.control.terrain.foot_contacts import FootContacts
 from tarsus.control.terrain.ground_map import GroundMap
@@ -90,14 +90,14 @@ class BodyMotion:
         self._posture, self.roughness = PostureFeedback(levelling, scale=scale), Roughness(adaptation, scale=scale)
         self.slope, self.stance, self.stopped = SlopeLimit(adaptation.friction), SlopeStance(robot), StoppedBody(robot)
         self.rates, self.drift, self.lowered = PostureRates(0.0, (0.0, 0.0)), 0j, 0.0
-        self.tilt: tuple[float, float] | None = None
+        self.tilt: RollPitch | None = None
         self.heading = HeadingFeedback()
         # What the body moved by when it was looked at: its velocity, the feet and how much lower they could be, whether
         # it is to stand still, the pace of the walk.
         self._moves: tuple[complex, list[tuple[complex, float]], bool, float] | None = None
         self.since, self._unmeasured = _PERIOD, 0.0
 
-    def see(self, attitude: tuple[float, float] | None, state: GaitState, dt: float) -> None:
+    def see(self, attitude: RollPitch | None, state: GaitState, dt: float) -> None:
         """Take the measured attitude.
 
         Parameters
@@ -115,7 +115,7 @@ class BodyMotion:
         elif self.tilt is not None and self._unmeasured > _HOLDS:
             self.tilt = (0.0, 0.0) if self._unmeasured <= _TIMEOUT else None
 
-    def level(self, attitude: tuple[float, float] | None, state: GaitState) -> None:
+    def level(self, attitude: RollPitch | None, state: GaitState) -> None:
         """Turn by the newest attitude once between two looks: feet that take over load tilt the body sooner.
 
         Parameters
@@ -138,7 +138,7 @@ class BodyMotion:
         self.rates = self._posture.rates(plane, tilt, velocity, feet=feet, stands=stands, pace=pace)
 
     @property
-    def off(self) -> tuple[float, float]:
+    def off(self) -> RollPitch:
         """By how much the body is off the attitude to keep, roll and pitch [rad]; 0 where that follows the feet."""
         roll, pitch = self.tilt or (0.0, 0.0)
         return self._posture.kept * roll, self._posture.kept * pitch
@@ -200,15 +200,13 @@ class BodyMotion:
             self.stance.step(level, rest - self.stance.shift, self.roughness.drawn_in, walks=bool(twist.any()))
         self._fit_height(state, rest, over, down, bears, dt)
         velocity, yaw = complex(*state.twist.value[:2].tolist()) * pace, float(state.posture.value[5])
-        tilt = measured.attitude or (0.0, 0.0)
         turning, rests = float(state.twist.value[2]) * pace, not twist.any()
-        self.heading.step(measured.angular_rates, turning, dt, tilt=tilt, yaw=yaw, rests=rests)
-        drift = self.odometry.step(measured.joint_angles, bears, velocity, dt, tilt=tilt, yaw=yaw)
-        self.drift = self.stance.not_downhill(drift)
-        along, torques = velocity * cmath.exp(-1j * yaw), measured.torques
-        self.stopped.step(measured.joint_angles, torques, bears, along, dt, tilt=tilt)
+        self.heading.step(measured, turning, dt, yaw=yaw, rests=rests)
+        self.drift = self.stance.not_downhill(self.odometry.step(measured, bears, velocity, dt, yaw=yaw))
+        along, tilt = velocity * cmath.exp(-1j * yaw), measured.attitude or (0.0, 0.0)
+        self.stopped.step(measured.joint_angles, measured.torques, bears, along, dt, tilt=tilt)
         margins = [(places[leg], over[leg] - (self.reach.lowest[leg] + self.lowered)) for leg in bears]
-        stands = self.slope.refuses or not twist.any()
+        stands = self.slope.refuses or rests
         self._moves = velocity, margins, stands, pace
         self._turn(*self._moves)
 

@@ -123,7 +123,7 @@ class FeltGround:
         """
         valid = self.measured = self._validator.validate(readings, dt)
         down, self._commanded = state.down.tolist(), angles
-        stopped = self._swings.step(angles[:, 0].tolist(), valid.joint_angles, dt, down)
+        stopped = self._swings.step(angles[:, 0].tolist(), valid, dt, down)
         measured = self._loads.contacts(valid, angles, dt, down=state.down, phase=state.swing_phase)
         if not state.felt:
             if measured is None and valid.attitude is None:
@@ -254,7 +254,7 @@ class FeltGround:
         stands = [on and not missing.steps_back(leg, places[leg]) for leg, on in enumerate(held)]
         missing.sees(self.ground.holes, rest)
         waits = self.condition.carried or (self._rests and self.support.held and near == down)
-        raised = partial(self.body.odometry.raised, measured=self.measured.joint_angles, commanded=self._commanded)
+        raised = partial(self.body.odometry.raised, valid=self.measured, angles=self._commanded)
         known = state, contacts, self.ground, places, self.body.off, raised
         searches = [] if waits else searching_feet(*known, down=down, stands=stands)
         on, radii = [on and stand for on, stand in zip(down, stands, strict=True)], footholds.placement_radii

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from tarsus.control.readings import RollPitch
 from tarsus.control.sensing.contact_estimator import ContactEstimator
 from tarsus.control.terrain.support import holds
 
@@ -152,7 +153,7 @@ class FootContacts:
         down: Sequence[bool],
         places: Sequence[complex],
         centre: complex,
-        tilt: tuple[float, float] | None,
+        tilt: RollPitch | None,
         dt: float,
     ) -> None:
         """Find a switch that stays open: a foot that pushes on the ground lifts the body off others.
@@ -180,7 +181,7 @@ class FootContacts:
             self._balance(down, places, centre, tilt, dt)
 
     def _balance(
-        self, down: Sequence[bool], places: Sequence[complex], centre: complex, tilt: tuple[float, float], dt: float
+        self, down: Sequence[bool], places: Sequence[complex], centre: complex, tilt: RollPitch, dt: float
     ) -> None:
         """Find a switch that stays open: a robot that does not tip stands on a foot that it does not feel."""
         missing = [leg for leg, on in enumerate(down) if on and not self.standing[leg]]
@@ -272,7 +273,7 @@ class FootContacts:
         return self._without[leg] <= grace or self.is_open(leg)
 
 
-def sunk_at(place: complex, tilt: tuple[float, float], before: tuple[float, float] = (0.0, 0.0)) -> float:
+def sunk_at(place: complex, tilt: RollPitch, before: RollPitch = (0.0, 0.0)) -> float:
     """Return by how much a body has sunk at a place by a change of its tilt [m].
 
     Parameters

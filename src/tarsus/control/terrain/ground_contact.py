@@ -6,6 +6,7 @@ import cmath
 import math
 from typing import TYPE_CHECKING, Any
 
+from tarsus.control.readings import RollPitch
 from tarsus.control.sensing.swing_monitor import USUAL_LAG
 from tarsus.control.terrain.body_motion import BodyMotion
 from tarsus.control.terrain.foot_contacts import FootContacts, Search, sunk_at
@@ -195,7 +196,7 @@ def searching_feet(
     contacts: FootContacts,
     ground: GroundMap,
     places: Sequence[complex],
-    off: tuple[float, float],
+    off: RollPitch,
     raised: Callable[[list[int]], Mapping[int, float]],
     *,
     down: Sequence[bool],

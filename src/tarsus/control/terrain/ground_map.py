@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from tarsus.control.readings import ValidReadings
+from tarsus.control.readings import RollPitch, ValidReadings
 from tarsus.control.terrain.reach import Reach
 from tarsus.control.transition.foothold_transfer import FootholdTransfer
 from tarsus.control.walk.felt_feet import GroundUnder
@@ -99,7 +99,7 @@ class GroundMap:
     def step(
         self,
         feet: Sequence[tuple[complex, float]],
-        tilt: tuple[float, float] | None,
+        tilt: RollPitch | None,
         state: GaitState,
         dt: float,
         *,

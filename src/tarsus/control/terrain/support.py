@@ -6,6 +6,8 @@ import cmath
 import math
 from collections.abc import Sequence
 
+from tarsus.control.readings import RollPitch
+
 __all__ = ["HALTING", "Support", "along_gravity", "holds"]
 
 # Rates at which the pace falls and rises [1/s].
@@ -35,7 +37,7 @@ def holds(feet: Sequence[complex], centre: complex) -> bool:
     return max(gaps) < math.pi - _LEAST_ANGLE
 
 
-def along_gravity(centre: complex, position: Sequence[float], tilt: tuple[float, float]) -> complex:
+def along_gravity(centre: complex, position: Sequence[float], tilt: RollPitch) -> complex:
     """Return where a point of the body is above its feet along gravity, x + iy in the heading frame [m].
 
     Parameters
