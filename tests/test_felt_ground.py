@@ -8,7 +8,7 @@ import pytest
 
 import tarsus
 from tarsus.control.pose.admittance import Admittance
-from tarsus.control.pose.posture_feedback import PostureFeedback
+from tarsus.control.pose.posture_feedback import BodyMove, PostureFeedback
 from tarsus.control.readings import SensorReadings, ValidReadings
 from tarsus.control.sensing.contact_estimator import ContactEstimator
 from tarsus.control.sensing.foot_loads import FootLoads
@@ -17,7 +17,8 @@ from tarsus.control.sensing.validation import ReadingsValidator
 from tarsus.control.terrain.foot_contacts import FootContacts
 from tarsus.control.terrain.reach import Reach
 from tarsus.control.terrain.roughness import Roughness
-from tarsus.control.terrain.support import Support, along_gravity, holds
+from tarsus.control.terrain.support import Footing, Support, along_gravity, holds
+from tarsus.control.tick_state import TickState
 from tarsus.control.walk.felt_feet import FeltFoot, FeltInputs, GroundUnder, travel_share
 from tarsus.control.walk.vertical_motion import _searching, _swinging
 from tarsus.control.walk_controller import WalkController
@@ -28,6 +29,7 @@ from tarsus.simulation.sensors.suite import FootSwitch, Sensor
 
 STRIDER = tarsus.load_robot("strider")
 FEET = [0.27 + 0.15j, 0.31j, -0.27 + 0.15j, -0.27 - 0.15j, -0.31j, 0.27 - 0.15j]
+STANDING = Footing(FEET, [True] * 6, 0j, 0.1)
 
 
 def test_a_good_switch_is_believed_at_once_and_a_noisy_one_takes_longer():
@@ -96,16 +98,16 @@ def test_the_tilt_to_keep_is_where_the_turn_ends(levelling):
     tilted = (0.0, -math.atan(slope) * share)
     along = math.tan(math.atan(slope) * (1 - share))
     feet = [(foot, 0.1) for foot in FEET]
-    rates = posture.rates(FootPlane(0.0, along, 0.0), tilted, 0j, feet=feet)
+    rates = posture.rates(FootPlane(0.0, along, 0.0), tilted, BodyMove(0j, feet))
     np.testing.assert_allclose(rates.turn, 0.0, atol=1e-12)
 
 
 def test_feet_at_the_end_of_their_reach_are_not_pushed_beyond_it():
     posture = PostureFeedback("level")
-    free = posture.rates(FootPlane(0.05), (0.1, 0.1), 0j, feet=[(foot, 0.2) for foot in FEET])
+    free = posture.rates(FootPlane(0.05), (0.1, 0.1), BodyMove(0j, [(foot, 0.2) for foot in FEET]))
     assert free.climb == pytest.approx(0.1)
     assert free.turn == pytest.approx((0.3, 0.3))
-    ended = posture.rates(FootPlane(0.05), (0.1, 0.1), 0j, feet=[(foot, 0.0) for foot in FEET])
+    ended = posture.rates(FootPlane(0.05), (0.1, 0.1), BodyMove(0j, [(foot, 0.0) for foot in FEET]))
     assert ended.climb == 0.0
     assert ended.turn == (0.0, 0.0)
 
@@ -142,10 +144,10 @@ def test_what_a_leg_reaches_is_what_kinematics_says():
 
 def test_front_legs_reach_higher_ahead_and_rear_legs_behind():
     controller, stroke = WalkController(STRIDER), 0.06
-    posture, rest = controller._tick.gait.posture.value, controller._tick.gait.foot
-    reach = Reach(STRIDER)
+    state, reach = controller._tick.gait, Reach(STRIDER)
+    rest = state.foot
     assert reach.highest_on_way(0, rest[0], rest[0]) == 0.0
-    reach.update(posture, rest, np.array([2 * stroke, 0.0, 0.0]), 0.5)
+    reach.update(TickState(state, np.array([2 * stroke, 0.0, 0.0])), rest, 0.5)
     tops = [[reach.highest_on_way(leg, rest[leg] + x, rest[leg] + x) for x in (-0.03, 0.0, 0.03)] for leg in (0, 2)]
     assert tops[0] == sorted(tops[0])
     assert tops[1] == sorted(tops[1], reverse=True)
@@ -156,16 +158,16 @@ def test_front_legs_reach_higher_ahead_and_rear_legs_behind():
 
 def test_places_out_of_reach_on_level_ground_do_not_tell_how_low_a_leg_reaches():
     controller = WalkController(STRIDER)
-    posture, rest = controller._tick.gait.posture.value, controller._tick.gait.foot
-    reach, still = Reach(STRIDER), np.zeros(3)
-    reach.update(posture, rest, still, 0.5)
+    state, reach = controller._tick.gait, Reach(STRIDER)
+    rest, still = state.foot, TickState(state, np.zeros(3))
+    reach.update(still, rest, 0.5)
     lowest, highest = reach.lowest, reach.highest
     # Ends of a stroke of half a metre are in reach at no height, its middle is.
-    reach.update(posture, rest, np.array([1.0, 0.0, 0.0]), 0.5)
+    reach.update(TickState(state, np.array([1.0, 0.0, 0.0])), rest, 0.5)
     assert (reach.lowest, reach.highest) == (lowest, highest)
     assert reach.highest_on_way(0, rest[0], rest[0] + 0.25) == highest[0] > 0.0
     # A leg whose foothold is out of reach keeps what is known of it, as 0 would command the body down at once.
-    reach.update(posture, np.array([rest[0] + 0.5, *rest[1:]]), still, 0.5)
+    reach.update(still, np.array([rest[0] + 0.5, *rest[1:]]), 0.5)
     assert (reach.lowest, reach.highest) == (lowest, highest)
     assert max(reach.lowest) < 0 < min(reach.highest)
 
@@ -361,7 +363,7 @@ def test_a_switch_that_stays_open_is_told_by_the_feet_that_its_foot_lifts_off():
     contacts = FootContacts(6)
     for tick in range(60):
         contacts.step([False, tick % 4 > 1, *[True] * 4], [True] * 6, 0.02)
-        contacts.find_open([True] * 6, FEET, 0j, None, 0.02)
+        contacts.find_open(STANDING, None, 0.02)
     assert contacts.is_open(0)
     assert contacts.standing[0]
     assert contacts.touches(0)
@@ -373,7 +375,7 @@ def test_a_switch_that_stays_open_is_told_by_the_feet_that_its_foot_lifts_off():
     over_a_hole = FootContacts(6)
     for _ in range(60):
         over_a_hole.step([False, *[True] * 5], [True] * 6, 0.02)
-        over_a_hole.find_open([True] * 6, FEET, 0j, (0.0, 0.0), 0.02)
+        over_a_hole.find_open(STANDING, (0.0, 0.0), 0.02)
     assert not over_a_hole.is_open(0)
 
 
@@ -381,10 +383,10 @@ def open_after(pitch, *, ticks):
     """The tick in which a switch is found open whose foot tilts the body while another one loses contact; or None."""
     contacts = FootContacts(6)
     contacts.step([True] * 6, [True] * 6, 0.02)
-    contacts.find_open([True] * 6, FEET, 0j, (0.0, 0.0), 0.02)
+    contacts.find_open(STANDING, (0.0, 0.0), 0.02)
     for tick in range(ticks):
         contacts.step([False, tick % 4 > 1, *[True] * 4], [True] * 6, 0.02)
-        contacts.find_open([True] * 6, FEET, 0j, (0.0, pitch), 0.02)
+        contacts.find_open(STANDING, (0.0, pitch), 0.02)
         if contacts.is_open(0):
             return tick
     return None
@@ -562,7 +564,8 @@ def test_contacts_that_come_late_make_even_ground_no_rough_one(name):
 )
 def test_a_body_turns_back_more_slowly_where_the_walk_waits_and_on_slopes(pace, slope, turn):
     feet = [(foot, 0.2) for foot in FEET]
-    rates = PostureFeedback("level").rates(FootPlane(0.0, slope, 0.0), (0.02, 0.0), 0j, feet=feet, pace=pace)
+    move = BodyMove(0j, feet, pace=pace)
+    rates = PostureFeedback("level").rates(FootPlane(0.0, slope, 0.0), (0.02, 0.0), move)
     assert rates.turn == pytest.approx((turn, 0.0))
 
 
@@ -620,7 +623,7 @@ def test_a_switch_that_stays_open_is_told_by_a_robot_that_does_not_tip():
         for tick, tilt in enumerate(tilts):
             shaken = shaking and tick % 8 > 3
             contacts.step([on and not (shaken and leg == 5) for leg, on in enumerate(readings)], down, 0.01)
-            contacts._balance(down, FEET, 0j, tilt, 0.01)
+            contacts._balance(STANDING._replace(down=down), tilt, 0.01)
         return [leg for leg in range(6) if contacts.is_open(leg)]
 
     standing, noise = [(0.0, 0.0)] * 60, np.random.default_rng(2).normal(0.0, 0.003, (60, 2)).tolist()

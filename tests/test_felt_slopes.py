@@ -8,13 +8,14 @@ import pytest
 
 from gait_robots import preset
 from tarsus.control.limitation import LimitationKind
-from tarsus.control.pose.posture_feedback import PostureFeedback
+from tarsus.control.pose.posture_feedback import BodyMove, PostureFeedback
 from tarsus.control.readings import SensorReadings
 from tarsus.control.robot_controller import RobotController
 from tarsus.control.terrain.reach import Reach
 from tarsus.control.terrain.roughness import GroundAdaptation
 from tarsus.control.terrain.slope_limit import SlopeLimit
 from tarsus.control.terrain.slope_stance import SlopeStance
+from tarsus.control.tick_state import TickState
 from tarsus.control.walk_controller import WalkController
 from tarsus.control.walk_state import WalkState
 from tarsus.errors import InputError
@@ -68,7 +69,7 @@ def test_the_body_follows_the_share_of_a_slope_that_the_legs_do_not_reach():
     pitch = 0.0
     for _ in range(2000):
         plane = FootPlane(0.0, math.tan(slope + pitch), 0.0)
-        rates = posture.rates(plane, (0.0, pitch), 0j, feet=[(0.2 + 0j, 0.1), (-0.2 + 0j, 0.1)])
+        rates = posture.rates(plane, (0.0, pitch), BodyMove(0j, [(0.2 + 0j, 0.1), (-0.2 + 0j, 0.1)]))
         pitch -= rates.turn[1] * 0.01
     assert pitch == pytest.approx(-0.3 * slope, abs=0.005)
 
@@ -77,7 +78,7 @@ def test_a_standing_body_rests_until_it_is_far_from_where_it_should_be():
     posture, feet = PostureFeedback("level"), [(0.2 + 0j, 0.1), (-0.2 + 0j, 0.1)]
 
     def moves(height, pitch, *, stands=True):
-        rates = posture.rates(FootPlane(height, 0.0, 0.0), (0.0, pitch), 0j, feet=feet, stands=stands)
+        rates = posture.rates(FootPlane(height, 0.0, 0.0), (0.0, pitch), BodyMove(0j, feet, stands))
         return rates.climb != 0.0 or rates.turn != (0.0, 0.0)
 
     assert moves(0.003, 0.009, stands=False)
@@ -146,11 +147,11 @@ def test_reach_is_computed_anew_only_where_stroke_or_posture_change():
     controller = WalkController(preset("strider"))
     state = controller._tick.gait
     reach, rest = Reach(preset("strider")), state.foot
-    reach.update(state.posture.value, rest, np.array([0.1, 0.0, 0.0]), 0.5)
+    reach.update(TickState(state, np.array([0.1, 0.0, 0.0])), rest, 0.5)
     lowest = reach.lowest
-    reach.update(state.posture.value, rest, np.array([0.1005, 0.0, 0.0]), 0.5)
+    reach.update(TickState(state, np.array([0.1005, 0.0, 0.0])), rest, 0.5)
     assert reach.lowest is lowest
-    reach.update(state.posture.value, rest, np.array([0.2, 0.0, 0.0]), 0.5)
+    reach.update(TickState(state, np.array([0.2, 0.0, 0.0])), rest, 0.5)
     assert reach.lowest is not lowest
     assert max(reach.highest_stand(0.03)) < max(reach.highest)
     # For a foot that hangs, the body goes lower than swings would like.
@@ -170,9 +171,11 @@ def test_on_rough_ground_the_body_is_raised_only_so_far_that_legs_reach_lower_fo
 
 def test_a_foot_that_seeks_ground_at_its_least_height_expects_it_below():
     state, reach, plane = WalkController(preset("strider"))._tick.gait, Reach(preset("strider")), FootPlane(0.01)
-    reach.update(state.posture.value, state.foot, np.array([0.1, 0.0, 0.0]), 0.5)
-    over, bears, seeking = [0.02, *reach.lowest[1:]], [0, 2, 3, 4, 5], [True, True] + [False] * 4
-    rises = reach.rises(plane, state.foot, over, bears=bears, seeking=seeking)
+    reach.update(TickState(state, np.array([0.1, 0.0, 0.0])), state.foot, 0.5)
+    over, seeking = [0.02, *reach.lowest[1:]], [0, 1]
+    hanging = [leg for leg in seeking if reach.hangs(leg, over[leg])]
+    assert hanging == [1]
+    rises = reach.rises(plane, over, bears=[0, 2, 3, 4, 5], hanging=hanging)
     assert rises[0] == pytest.approx(0.01)
     assert rises[1] < reach.lowest[1] - plane.height
     assert rises[2:] == pytest.approx([height - plane.height for height in reach.lowest[2:]])

@@ -2,6 +2,7 @@
 
 import cmath
 import math
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -12,6 +13,7 @@ from tarsus.control.readings import SensorReadings, ValidReadings
 from tarsus.control.sensing.validation import ReadingsValidator
 from tarsus.control.terrain.ground_contact import not_sunk
 from tarsus.control.terrain.ground_map import GroundMap
+from tarsus.control.terrain.support import Footing
 from tarsus.control.walk.state import GaitState
 from tarsus.errors import InputError
 from tarsus.gait.ground_heights import GroundHeights
@@ -188,6 +190,17 @@ def test_a_foot_that_crosses_a_hole_is_known_until_it_is_down():
         assert known.crossing == set()
 
 
+def body(known, reach, standing):
+    """What is known of the ground, of the reach, and of which feet stand."""
+    contacts, even = SimpleNamespace(standing=standing), SimpleNamespace(deeper=0.0)
+    return SimpleNamespace(ground=known, contacts=contacts, reach=reach, roughness=even)
+
+
+def footing(state, places):
+    """All feet on the ground."""
+    return Footing(places, [True] * 6, 0j, float(state.posture.value[2]))
+
+
 @pytest.mark.parametrize("depth", [0.0, 0.3])
 def test_no_foot_over_a_hole_that_is_seen_stands_on_ground_that_its_switch_does_not_tell_of(depth):
     (state, reach, footholds), known = stepping(), GroundMap()
@@ -196,7 +209,7 @@ def test_no_foot_over_a_hole_that_is_seen_stands_on_ground_that_its_switch_does_
     known.see(ValidReadings(ground=GroundHeights(heights=np.where(hole, -depth, 0.0))), state)
     known.step([(place, 0.0) for place in places[1:]], None, state, 0.03, drift=0j)
     known.choose(state, reach, footholds)
-    near = not_sunk(state, known, places, [True] * 6, [True] * 6, reach=reach, deeper=0.0, tips=False)
+    near = not_sunk(state, body(known, reach, [True] * 6), footing(state, places), tips=False)
     assert near == [depth == 0.0] * 6
 
 
@@ -221,7 +234,7 @@ def test_no_foot_that_is_far_off_the_ground_stands_on_ground_that_its_switch_doe
     state = state._replace(ground_height=np.where(np.arange(6) == 0, rise, 0.0))
     places, feet = [complex(foot) - state.origin for foot in state.foot], [stands, *[True] * 5]
     known.step([(place, 0.0) for place in places[1:]], None, state, 0.03, drift=0j)
-    found = not_sunk(state, known, places, [True] * 6, feet, reach=reach, deeper=0.0, tips=False)
+    found = not_sunk(state, body(known, reach, feet), footing(state, places), tips=False)
     assert found == [near] * 6
 
 
@@ -230,28 +243,27 @@ def test_a_foot_passes_over_what_is_on_its_way_and_rises_first_where_that_is_nea
     known.step(standing(lambda place: 0.0), None, at(), 0.03, drift=0j)
     known.see(ValidReadings(ground=GroundHeights(heights=np.where(np.abs(X - 0.1) < 0.025, 0.06, 0.0))), at())
     known.step(standing(lambda place: 0.0), None, at(), 0.03, drift=0j)
-    over = known.under(0j, 0.2 + 0j, 0.01, (-0.1, 0.2))
+    over = known.under(0j, 0.2 + 0j, 0.01, (-0.1, 0.2), clears=False)
     assert tuple(over) == pytest.approx((0.01, -0.09, 0.21, 0.07, False, None, False), abs=1e-9)
-    assert known.under(0.05 + 0j, 0.2 + 0j, 0.0, (None, 0.2)).steep
-    assert known.under(0.05 + 0j, 0.1 + 0j, 0.0, (None, 0.2)).lowest == pytest.approx(0.06)
-    assert not known.under(0.15 + 0j, 0.15 + 0j, 0.0, (None, 0.2)).steep
+    assert known.under(0.05 + 0j, 0.2 + 0j, 0.0, (None, 0.2), clears=False).steep
+    assert known.under(0.05 + 0j, 0.1 + 0j, 0.0, (None, 0.2), clears=False).lowest == pytest.approx(0.06)
+    assert not known.under(0.15 + 0j, 0.15 + 0j, 0.0, (None, 0.2), clears=False).steep
     # A body 50 mm high whose middle is 60 mm over the ground has to rise by 60 - (60 - 25) + 15 mm.
     assert known.body_rise((0.12, 0.08, 0.025), 0.06) == pytest.approx(0.04)
     assert GroundMap().body_rise((0.12, 0.08, 0.025), 0.06) == -math.inf
 
 
 def test_the_body_knows_of_steps_before_its_feet_are_on_them():
-    known, rest = GroundMap(), np.array(REST)
-    strokes = np.full(6, 0.1 + 0j)
-    assert known.rises([0.0] * 6, rest, strokes) == ([0.0] * 6, [0.0] * 6)
+    known, reach = GroundMap(), SimpleNamespace(rest=np.array(REST), strokes=np.full(6, 0.1 + 0j))
+    assert known.rises([0.0] * 6, reach) == ([0.0] * 6, [0.0] * 6)
     known.step(standing(lambda place: 0.0), None, at(), 0.03, drift=0j)
     known.see(
         ValidReadings(ground=GroundHeights(heights=np.where(X > 0.21, 0.08, np.where(X < -0.21, -0.05, 0.0)))), at()
     )
-    least, most = known.rises([0.0] * 6, rest, strokes)
+    least, most = known.rises([0.0] * 6, reach)
     assert most == pytest.approx([0.08, 0.0, 0.0, 0.0, 0.0, 0.08])
     assert least == pytest.approx([0.0] * 6)
-    assert known.rises([0.0] * 6, rest, strokes, looks=False) == ([0.0] * 6, [0.0] * 6)
+    assert known.rises([0.0] * 6, reach, looks=False) == ([0.0] * 6, [0.0] * 6)
 
 
 def crossed(sensors):

@@ -1,5 +1,7 @@
 """Holes and obstacles: feet step back or try again, and the robot stops and walks away."""
 
+from types import SimpleNamespace
+
 import mujoco
 import numpy as np
 import pytest
@@ -13,9 +15,9 @@ from tarsus.control.readings import ValidReadings
 from tarsus.control.sensing.leg_odometry import LegOdometry
 from tarsus.control.terrain.foot_contacts import FootContacts, Search
 from tarsus.control.terrain.ground_contact import met_ground
-from tarsus.control.terrain.ground_map import GroundMap
 from tarsus.control.terrain.missing_ground import MissingGround
 from tarsus.control.terrain.roughness import Roughness
+from tarsus.control.terrain.support import Footing
 from tarsus.control.walk.felt_feet import FeltFoot
 from tarsus.control.walk.step_timing import StepTiming
 from tarsus.simulation import SimulatedPlant, terrain
@@ -23,6 +25,7 @@ from tarsus.simulation import SimulatedPlant, terrain
 NAMES = ("LF", "LM", "LR", "RR", "RM", "RF")
 REST = [0.2 + 0.2j, 0.25j, -0.2 + 0.2j, -0.2 - 0.2j, -0.25j, 0.2 - 0.2j]
 AHEAD = [REST[0] + 0.05, *REST[1:]]
+STANDING = Footing(REST, [True] * 6, 0j, 0.1)
 
 
 def stepped(
@@ -40,9 +43,10 @@ def stepped(
     leans=0.0,
     lost=None,
 ):
-    sizes, missing.twist, missing.lost = {"height": 0.1, "deeper": deeper}, twist, lost
+    missing.twist, missing.lost = twist, lost
     searches = [Search(*search, sunk=sunk[search[0]], raised=raised, leans=leans) for search in searches]
-    missing.step(searches, feet, stands, dt, centre=centre, rest=REST, radii=[0.05] * 6, **sizes)
+    footholds = SimpleNamespace(rest=np.array(REST), placement_radii=[0.05] * 6)
+    missing.step(searches, Footing(feet, stands, centre, 0.1), dt, footholds=footholds, deeper=deeper)
     return missing
 
 
@@ -576,11 +580,11 @@ def test_a_robot_that_its_feet_do_not_hold_tips_where_a_foot_has_lost_its_ground
     def tips(most=0.01, *, touching=(1, 4), time=0.06, tilt=(0.0, 0.1)):
         contacts = FootContacts(6)
         contacts.step([True] * 6, [True] * 6, 0.02)
-        contacts.find_open([True] * 6, REST, 0j, (0.0, 0.0), 0.02)
+        contacts.find_open(STANDING, (0.0, 0.0), 0.02)
         for _ in range(round(time / 0.02)):
             contacts.step([leg in touching for leg in range(6)], [True] * 6, 0.02)
-            contacts.find_open([True] * 6, REST, 0j, tilt, 0.02)
-        return contacts.tips([True] * 6, REST, 0j, most)
+            contacts.find_open(STANDING, tilt, 0.02)
+        return contacts.tips(STANDING, most)
 
     assert tips() in (0, 5)
     assert tips(tilt=(0.0, -0.1)) in (2, 3)
@@ -635,10 +639,11 @@ def test_feet_put_down_early_because_the_robot_tips_or_is_lifted_are_still_due(p
         swing_phase=np.where(lifted, phase, 0.0),
         felt=[FeltFoot()] * 6,
     )
-    contacts, missing = FootContacts(6), MissingGround(NAMES)
-    missing.tips = complex(tips)
-    known = contacts, GroundMap(), tarsus.WalkController(setup.robot)._walk.ground.body, missing
-    after, landed = met_ground(state, *known, stopped=[], timing=timing, pace=1.0, in_air=in_air)
+    controller = tarsus.WalkController(setup.robot)
+    ground, touching = controller._walk.ground, tarsus.SensorReadings(contacts=[not in_air] * 6)
+    ground.missing.tips, ground.condition.airborne = complex(tips), float(in_air)
+    after, landed = ground.sense(touching, 0.01, state, timing=timing, angles=controller.angles)
+    assert ground.condition.in_air == in_air
     assert sorted(landed) == [0, 2, 4]
     assert after.down.all()
     assert timing.due(after, 0.0) == [on and due for on in lifted]
@@ -674,12 +679,11 @@ def test_while_the_walk_waits_a_foot_on_its_way_down_stands_on_lower_ground_that
         ground_height=np.where(lifted, height, 0.0),
         felt=[FeltFoot(speed=speed, top=0.03, top_phase=0.42), *[FeltFoot()] * 5],
     )
-    contacts = FootContacts(6)
+    body = tarsus.WalkController(setup.robot)._walk.ground.body
     for touches in (False, True):
         for _ in range(10):
-            contacts.step([touches, *[True] * 5], state.down.tolist(), 0.01)
-    known = contacts, GroundMap(), tarsus.WalkController(setup.robot)._walk.ground.body, MissingGround(NAMES)
-    _, landed = met_ground(state, *known, stopped=[], timing=timing, pace=pace, in_air=False)
+            body.contacts.step([touches, *[True] * 5], state.down.tolist(), 0.01)
+    _, landed = met_ground(state, body, MissingGround(NAMES), stopped=[], timing=timing, pace=pace)
     assert landed == [0] * lands
 
 
@@ -693,14 +697,13 @@ def test_ground_that_a_foot_meets_sooner_as_the_body_tips_towards_it_is_not_roug
         ground_height=np.where(lifted, height, 0.0),
         felt=[FeltFoot(speed=-0.1, top=0.03, top_phase=0.42), *[FeltFoot()] * 5],
     )
-    contacts, body = FootContacts(6), tarsus.WalkController(setup.robot)._walk.ground.body
+    body = tarsus.WalkController(setup.robot)._walk.ground.body
     for touches in (False, True):
         for _ in range(10):
-            contacts.step([touches, *[True] * 5], state.down.tolist(), 0.01)
-    contacts.sunk[0], expected = sunk, Roughness(tarsus.GroundAdaptation())
+            body.contacts.step([touches, *[True] * 5], state.down.tolist(), 0.01)
+    body.contacts.sunk[0], expected = sunk, Roughness(tarsus.GroundAdaptation())
     expected.landed(off)
-    known = contacts, GroundMap(), body, MissingGround(NAMES)
-    met_ground(state, *known, stopped=[], timing=timing, pace=1.0, in_air=False)
+    met_ground(state, body, MissingGround(NAMES), stopped=[], timing=timing, pace=1.0)
     assert body.roughness.value == pytest.approx(expected.value)
 
 

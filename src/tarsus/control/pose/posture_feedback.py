@@ -10,7 +10,7 @@ from tarsus.control.readings import RollPitch
 from tarsus.errors import InputError
 from tarsus.gait.foot_plane import FootPlane
 
-__all__ = ["LEVELLING_SHARES", "Levelling", "PostureFeedback", "PostureRates"]
+__all__ = ["LEVELLING_SHARES", "BodyMove", "Levelling", "PostureFeedback", "PostureRates"]
 
 Levelling: TypeAlias = Literal["level", "between", "follow"]
 """The attitude to keep: level, along the slope, or in the middle between both."""
@@ -30,6 +30,30 @@ _BARRIER = 8.0
 _RESTS, _MOVES = (0.01, 0.06), (0.05, 0.18)
 # How fast the height to keep changes [m/s], and how much of the body height it may be lower.
 _RAISING, _LOWERING, _MOST_LOWER = 0.08, 0.2, 0.25
+
+
+_Ranges: TypeAlias = tuple[Sequence[float], Sequence[float]]
+
+
+class BodyMove(NamedTuple):
+    """What the body does over its standing feet.
+
+    Attributes
+    ----------
+    velocity : complex
+        Velocity of the body [m/s].
+    feet : sequence of (complex, float)
+        The feet that stand, at least one: where, x + iy in the heading frame, and how much lower they could be [m].
+    stands : bool
+        Whether the body is to stand still: feet that are moved under their load slide down a slope.
+    pace : float
+        Rate of the walk, 0 to 1: where it waits, feet look for the ground, and the body turns more slowly.
+    """
+
+    velocity: complex
+    feet: Sequence[tuple[complex, float]]
+    stands: bool = False
+    pace: float = 1.0
 
 
 class PostureRates(NamedTuple):
@@ -76,14 +100,7 @@ class PostureFeedback:
         self._rests = False
 
     def fit_to_reach(
-        self,
-        rises: tuple[Sequence[float], Sequence[float]],
-        raises: tuple[float, float],
-        dt: float,
-        *,
-        reach: tuple[Sequence[float], Sequence[float]],
-        height: float,
-        share: float,
+        self, rises: _Ranges, raises: tuple[float, float], dt: float, *, reach: _Ranges, height: float, share: float
     ) -> None:
         """Change the height to keep towards the one at which all legs reach the plane of the feet.
 
@@ -107,17 +124,8 @@ class PostureFeedback:
         most = self._scale * dt
         self.raised += min(max(wanted - self.raised, -_LOWERING * most), _RAISING * most)
 
-    def rates(
-        self,
-        plane: FootPlane,
-        tilt: RollPitch | None,
-        velocity: complex,
-        *,
-        feet: Sequence[tuple[complex, float]],
-        stands: bool = False,
-        pace: float = 1.0,
-    ) -> PostureRates:
-        """Return how the body is to move.
+    def rates(self, plane: FootPlane, tilt: RollPitch | None, move: BodyMove) -> PostureRates:
+        """Return how the body is to climb and to turn.
 
         Parameters
         ----------
@@ -125,16 +133,10 @@ class PostureFeedback:
             The plane of the standing feet, in the heading frame.
         tilt : (roll, pitch) or None
             By how much the body is tilted more than commanded [rad]; None where it is not measured.
-        velocity : complex
-            Velocity of the body [m/s].
-        feet : sequence of (complex, float)
-            The feet that stand, at least one: where, x + iy in the heading frame, and how much lower they could be [m].
-        stands : bool
-            Whether the body is to stand still: feet that are moved under their load slide down a slope.
-        pace : float
-            Rate of the walk, 0 to 1: where it waits, feet look for the ground, and the body turns more slowly.
+        move : BodyMove
+            What the body does.
         """
-        fastest = self._scale * _MOST_CLIMB
+        (velocity, feet, stands, pace), fastest = move, self._scale * _MOST_CLIMB
         climb = min(max(_HEIGHT_GAIN * (plane.height + self.raised), -fastest), fastest)
         climb += plane.slope_x * velocity.real + plane.slope_y * velocity.imag
         even = (_SLOPES[1] - math.hypot(plane.slope_x, plane.slope_y)) / (_SLOPES[1] - _SLOPES[0])

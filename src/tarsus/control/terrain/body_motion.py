@@ -4,15 +4,12 @@ from __future__ import annotations
 
 import cmath
 import math
-from collections.abc import Sequence
 from typing import TYPE_CHECKING
-
-import numpy as np
 
 from tarsus.control.limitation import Limitation, LimitationKind
 from tarsus.control.limiter.stopped_body import StoppedBody
 from tarsus.control.pose.heading_feedback import HeadingFeedback
-from tarsus.control.pose.posture_feedback import Levelling, PostureFeedback, PostureRates
+from tarsus.control.pose.posture_feedback import BodyMove, Levelling, PostureFeedback, PostureRates
 from tarsus.control.readings import RollPitch, ValidReadings
 from tarsus.control.sensing.leg_odometry import LegOdometry
 from tarsus.control.terrain.foot_contacts import FootContacts
@@ -21,14 +18,16 @@ from tarsus.control.terrain.reach import Reach
 from tarsus.control.terrain.roughness import GroundAdaptation, Roughness
 from tarsus.control.terrain.slope_limit import SlopeLimit
 from tarsus.control.terrain.slope_stance import SlopeStance
+from tarsus.control.terrain.support import Footing
+from tarsus.control.tick_state import TickState
+from tarsus.control.transition.executor import TransitionExecutor
 from tarsus.control.walk.state import PHASE_TOLERANCE, GaitState
-from tarsus.control.walk.step_timing import StepTiming
 from tarsus.gait.stance.reachable_heights import reachable_share
 from tarsus.gait.stance.stance_geometry import SWING_HEIGHT
 from tarsus.robot.robot import Robot
 
 if TYPE_CHECKING:
-    from jaxtyping import Complex, Float
+    pass
 
 __all__ = ["BodyMotion"]
 
@@ -49,8 +48,6 @@ class BodyMotion:
     ----------
     robot : Robot
         A single robot.
-    contacts, ground : FootContacts, GroundMap
-        Which feet bear load; where the ground is.
     levelling : "level", "between", "follow" or None
         The attitude to keep on slopes; None for no use of the measured attitude.
     adaptation : GroundAdaptation
@@ -58,6 +55,8 @@ class BodyMotion:
 
     Attributes
     ----------
+    contacts, ground : FootContacts, GroundMap
+        Which feet bear load; where the ground is.
     rates, drift : PostureRates, complex
         How the body is to move; velocity of the feet that makes up for lost way, in the heading frame [m/s].
     heading : HeadingFeedback
@@ -76,25 +75,17 @@ class BodyMotion:
         Time since height, tilt and lost way were looked at [s].
     """
 
-    def __init__(
-        self,
-        robot: Robot,
-        contacts: FootContacts,
-        ground: GroundMap,
-        *,
-        levelling: Levelling | None,
-        adaptation: GroundAdaptation,
-    ) -> None:
-        self._contacts, self._ground, self.reach, self.odometry = contacts, ground, Reach(robot), LegOdometry(robot)
+    def __init__(self, robot: Robot, *, levelling: Levelling | None, adaptation: GroundAdaptation) -> None:
+        self.contacts, self.ground = FootContacts(robot.legs), GroundMap()
+        self.reach, self.odometry = Reach(robot), LegOdometry(robot)
         scale = self.reach.scale
         self._posture, self.roughness = PostureFeedback(levelling, scale=scale), Roughness(adaptation, scale=scale)
         self.slope, self.stance, self.stopped = SlopeLimit(adaptation.friction), SlopeStance(robot), StoppedBody(robot)
         self.rates, self.drift, self.lowered = PostureRates(0.0, (0.0, 0.0)), 0j, 0.0
         self.tilt: RollPitch | None = None
         self.heading = HeadingFeedback()
-        # What the body moved by when it was looked at: its velocity, the feet and how much lower they could be, whether
-        # it is to stand still, the pace of the walk.
-        self._moves: tuple[complex, list[tuple[complex, float]], bool, float] | None = None
+        # What the body did when it was looked at, until it is turned by a newer attitude.
+        self._move: BodyMove | None = None
         self.since, self._unmeasured = _PERIOD, 0.0
 
     def see(self, attitude: RollPitch | None, state: GaitState, dt: float) -> None:
@@ -125,17 +116,12 @@ class BodyMotion:
         state : GaitState
             The gait state.
         """
-        if attitude is not None and self._moves is not None and _PERIOD / 2 <= self.since < _PERIOD:
+        if attitude is not None and self._move is not None and _PERIOD / 2 <= self.since < _PERIOD:
             before = self.tilt or (math.inf, math.inf)
             self.see(attitude, state, 0.0)
             if math.dist(before, self.tilt or before) > _TURNED:
-                self._turn(*self._moves)
-            self._moves = None
-
-    def _turn(self, velocity: complex, feet: list[tuple[complex, float]], stands: bool, pace: float) -> None:
-        """Decide how the body is to move over feet that could be so much lower."""
-        plane, tilt = self._ground.plane, self.tilt
-        self.rates = self._posture.rates(plane, tilt, velocity, feet=feet, stands=stands, pace=pace)
+                self.rates = self._posture.rates(self.ground.plane, self.tilt, self._move)
+            self._move = None
 
     @property
     def off(self) -> RollPitch:
@@ -156,87 +142,62 @@ class BodyMotion:
         return found + self.odometry.limitations
 
     def step(
-        self,
-        state: GaitState,
-        measured: ValidReadings,
-        *,
-        feet: tuple[list[complex], list[bool]],
-        timing: StepTiming,
-        twist: Float[np.ndarray, "3"],
-        pace: float,
-        rest: Complex[np.ndarray, "legs"],
+        self, tick: TickState, valid: ValidReadings, footing: Footing, transitions: TransitionExecutor, *, pace: float
     ) -> None:
         """Look at plane, reach and lost way, and decide how the body is to move.
 
         Parameters
         ----------
-        state, measured : GaitState, ValidReadings
-            The gait state; the readings.
-        feet : tuple of (list of complex, list of bool)
-            Where the feet are, in the heading frame [m], and which should stand.
-        timing : StepTiming
-            The gait and its frequency.
-        twist : array, shape (3,)
-            The twist that is followed.
+        tick, valid : TickState, ValidReadings
+            The gait state and the twist that is followed; the readings.
+        footing, transitions : Footing, TransitionExecutor
+            The feet that should stand; timing and rest footholds.
         pace : float
             Rate of the steps and the twist, 0 to 1.
-        rest : complex array, shape (legs,)
-            Rest footholds in the heading frame [m].
         """
-        (places, down), contacts, dt, self.since = feet, self._contacts, self.since, 0.0
+        state, places, dt, self.since = tick.gait, footing.places, self.since, 0.0
+        rest, rests = transitions.footholds.rest, not tick.twist.any()
         over = (state.ground_height - state.elevation).tolist()
-        bears = [leg for leg, on in enumerate(down) if on and contacts.touches(leg)]
-        self.reach.update(state.posture.value, rest, twist, timing.stance_time)
+        bears = [leg for leg, on in enumerate(footing.down) if on and self.contacts.touches(leg)]
+        self.reach.update(tick, rest, transitions.timing.stance_time)
         if not bears:
-            self.rates, self.drift, self._moves = PostureRates(0.0, (0.0, 0.0)), 0j, None
+            self.rates, self.drift, self._move = PostureRates(0.0, (0.0, 0.0)), 0j, None
             self.heading.forget()
             return
-        self._ground.step([(places[leg], over[leg]) for leg in bears], self.tilt, state, dt, drift=self.drift)
-        level = self._ground.plane.levelled(self.tilt)
+        self.ground.step([(places[leg], over[leg]) for leg in bears], self.tilt, state, dt, drift=self.drift)
+        level = self.ground.plane.levelled(self.tilt)
         # The way back stays open without an attitude, too.
         if self.tilt is not None or self.slope.refuses:
-            self.slope.step(level, complex(*twist[:2].tolist()), math.hypot(*self.off))
+            self.slope.step(level, complex(*tick.twist[:2].tolist()), math.hypot(*self.off))
         if self.tilt is not None:
-            self.stance.step(level, rest - self.stance.shift, self.roughness.drawn_in, walks=bool(twist.any()))
-        self._fit_height(state, rest, over, down, bears, dt)
+            self.stance.step(level, rest - self.stance.shift, self.roughness.drawn_in, walks=not rests)
+        self._fit_height(state, over, footing.down, bears, dt)
         velocity, yaw = complex(*state.twist.value[:2].tolist()) * pace, float(state.posture.value[5])
-        turning, rests = float(state.twist.value[2]) * pace, not twist.any()
-        self.heading.step(measured, turning, dt, yaw=yaw, rests=rests)
-        self.drift = self.stance.not_downhill(self.odometry.step(measured, bears, velocity, dt, yaw=yaw))
-        along, tilt = velocity * cmath.exp(-1j * yaw), measured.attitude or (0.0, 0.0)
-        self.stopped.step(measured.joint_angles, measured.torques, bears, along, dt, tilt=tilt)
+        self.heading.step(valid, float(state.twist.value[2]) * pace, dt, yaw=yaw, rests=rests)
+        self.drift = self.stance.not_downhill(self.odometry.step(valid, bears, velocity, dt, yaw=yaw))
+        along, tilt = velocity * cmath.exp(-1j * yaw), valid.attitude or (0.0, 0.0)
+        self.stopped.step(valid.joint_angles, valid.torques, bears, along, dt, tilt=tilt)
         margins = [(places[leg], over[leg] - (self.reach.lowest[leg] + self.lowered)) for leg in bears]
-        stands = self.slope.refuses or rests
-        self._moves = velocity, margins, stands, pace
-        self._turn(*self._moves)
+        self._move = BodyMove(velocity, margins, self.slope.refuses or rests, pace)
+        self.rates = self._posture.rates(self.ground.plane, self.tilt, self._move)
 
-    def _fit_height(
-        self,
-        state: GaitState,
-        rest: Complex[np.ndarray, "legs"],
-        over: Sequence[float],
-        down: Sequence[bool],
-        bears: Sequence[int],
-        dt: float,
-    ) -> None:
+    def _fit_height(self, state: GaitState, over: list[float], down: list[bool], bears: list[int], dt: float) -> None:
         """Change the height of the body to one at which all legs reach the ground."""
-        contacts, reach, plane = self._contacts, self.reach, self._ground.plane
-        seeking = [on and contacts.seeks(leg) for leg, on in enumerate(down)]
+        contacts, reach, plane = self.contacts, self.reach, self.ground.plane
+        hanging = [leg for leg, on in enumerate(down) if on and contacts.seeks(leg) and reach.hangs(leg, over[leg])]
         stands = all(on or not should for on, should in zip(contacts.standing, down, strict=True))
-        rises = self._ground.rises(
-            reach.rises(plane, rest, over, bears=bears, seeking=seeking), rest, reach.strokes, looks=stands
-        )
-        lower = 0.0 if self._ground.given else _LOWER * self.roughness.value
-        rises = [rise - lower for rise in rises[0]], rises[1]
+        now = reach.rises(plane, over, bears=bears, hanging=hanging)
+        least, most = self.ground.rises(now, reach, looks=stands)
+        lower = 0.0 if self.ground.given else _LOWER * self.roughness.value
+        rises = [rise - lower for rise in least], most
         height, swing_height = state.posture.value[[2, SWING_HEIGHT]].tolist()
-        hangs = any(seeks and reach.hangs(leg, over[leg]) for leg, seeks in enumerate(seeking))
         level = plane.levelled(self.tilt)
-        highest = reach.highest_stand(swing_height, hangs=hangs)
+        highest = reach.highest_stand(swing_height, hangs=bool(hanging))
         # The underside of the body limits the slope like a foot that may be at any depth.
         rise, clearance = self.stance.underside(level, height)
-        slope = [*map(level.at, rest.tolist()), rise]
+        slope = [*map(level.at, reach.rest.tolist()), rise]
         share = reachable_share(slope, [*reach.lowest, -math.inf], [*highest, clearance])
-        wanted = max(self.roughness.body_rise, self._ground.body_rise(self.stance.half, height))
+        wanted = max(self.roughness.body_rise, self.ground.body_rise(self.stance.half, height))
         rise, clearance = self.stance.underside(plane, height)
         raises = (rise - clearance, wanted)
         reached = [low + self.lowered for low in reach.lowest], highest

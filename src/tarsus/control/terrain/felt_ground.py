@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import cmath
-from functools import partial
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -17,12 +16,13 @@ from tarsus.control.sensing.foot_loads import FootLoads
 from tarsus.control.sensing.swing_monitor import USUAL_LAG, SwingMonitor
 from tarsus.control.sensing.validation import ReadingsValidator
 from tarsus.control.terrain.body_motion import BodyMotion
-from tarsus.control.terrain.foot_contacts import FootContacts
-from tarsus.control.terrain.ground_contact import met_ground, not_sunk, searching_feet
-from tarsus.control.terrain.ground_map import GroundMap
+from tarsus.control.terrain.foot_contacts import Search, sunk_at
+from tarsus.control.terrain.ground_contact import met_ground, not_sunk, put_down
 from tarsus.control.terrain.missing_ground import SLOW, MissingGround
 from tarsus.control.terrain.roughness import GroundAdaptation
-from tarsus.control.terrain.support import Support, along_gravity
+from tarsus.control.terrain.support import Footing, Support, along_gravity
+from tarsus.control.tick_state import TickState
+from tarsus.control.transition.executor import TransitionExecutor
 from tarsus.control.transition.foothold_transfer import FootholdTransfer
 from tarsus.control.walk.felt_feet import FeltFoot, FeltInputs, GroundUnder, travel_share
 from tarsus.control.walk.ground_pose import body_posture
@@ -45,6 +45,8 @@ _LEAVING = 0.1
 # Speed with which feet look for the ground while others hold a robot that stands [m/s], and how far below the expected
 # ground [m]: faster or lower ones push the body off the others.
 _GENTLE, _NEAR = 0.02, 0.004
+# A foot that goes down faster has not come to the end of its reach, which sinks with the body [m/s].
+_FALLS = 0.1
 
 
 class FeltGround:
@@ -86,8 +88,8 @@ class FeltGround:
         adaptation: GroundAdaptation,
         admittance: Admittance | None,
     ) -> None:
-        self.contacts, self.ground = FootContacts(robot.legs), GroundMap()
-        self.body = BodyMotion(robot, self.contacts, self.ground, levelling=levelling, adaptation=adaptation)
+        self.body = BodyMotion(robot, levelling=levelling, adaptation=adaptation)
+        self.contacts, self.ground = self.body.contacts, self.body.ground
         self.missing = MissingGround(robot.leg_names, scale=self.body.reach.scale)
         self.measured, self.support, self.condition = ValidReadings(), Support(), BodyCondition()
         self.offsets: Float[np.ndarray, "legs"] | None = None
@@ -146,37 +148,26 @@ class FeltGround:
         self.offsets = self._loads.offsets(valid, angles, dt, feet=state.foot, stands=down)
         if self.missing.stranded and all(down):
             state = timing.with_first_lift(state, self.missing.stranded[0])
-        known, pace = (self.contacts, self.ground, self.body, self.missing), self.support.pace
-        return met_ground(state, *known, stopped=stopped, timing=timing, pace=pace, in_air=self.condition.in_air)
+        pace = self.support.pace
+        state, landed = met_ground(state, self.body, self.missing, stopped=stopped, timing=timing, pace=pace)
+        if self.missing.tips or self.condition.in_air:
+            state, swung = put_down(state, timing=timing, pace=pace)
+            landed += swung
+        return state, landed
 
-    def inputs(
-        self,
-        state: GaitState,
-        dt: float,
-        *,
-        timing: StepTiming,
-        twist: Float[np.ndarray, "3"],
-        footholds: FootholdTransfer,
-        excluded: list[int],
-        standing: bool,
-    ) -> FeltInputs:
+    def inputs(self, tick: TickState, transitions: TransitionExecutor, excluded: list[int], dt: float) -> FeltInputs:
         """Return what the feet and the body do in a tick.
 
         Parameters
         ----------
-        state, dt : GaitState, float
-            The gait state; length of the tick [s].
-        timing : StepTiming
-            The gait and its frequency.
-        twist : array, shape (3,)
-            The twist that is followed.
-        footholds, excluded : FootholdTransfer, list of int
-            Rest footholds, and how far from them feet may be put down; legs that bear no load.
-        standing : bool
-            Whether the robot stands.
+        tick, transitions : TickState, TransitionExecutor
+            The state of the walk; its timing, rest footholds, and how far from them feet may be put down.
+        excluded, dt : list of int, float
+            Legs that bear no load; length of the tick [s].
         """
+        state, standing, timing, footholds = tick.gait, tick.standing, transitions.timing, transitions.footholds
         kept, before, self._idle = self._inputs, self._given, self._idle + dt
-        self._still = not any(twist.tolist()) or (self.body.slope.refuses and self.support.halts)
+        self._still = not any(tick.twist.tolist()) or (self.body.slope.refuses and self.support.halts)
         self._given, self._rests = (excluded, standing), self._still and not self.missing.refuses
         if kept and self._given == before and (standing or not self._next_lift.is_due(timing, state, dt)):
             self._inputs = kept = kept.moved_by(self.body.rates.climb, self.body.rates.turn)
@@ -184,21 +175,23 @@ class FeltGround:
         due, turn = None if standing else timing.due(state, dt), cmath.exp(-1j * state.yaw)
         dt, self._idle = self._idle, 0.0
         steps = [leg not in excluded for leg in range(len(state.foot))]
-        down = [on and step for on, step in zip(state.down.tolist(), steps, strict=True)]
-        places = [(foot - state.origin) * turn for foot in state.foot.tolist()]
+        footing = Footing(
+            [(foot - state.origin) * turn for foot in state.foot.tolist()],
+            [on and step for on, step in zip(state.down.tolist(), steps, strict=True)],
+            along_gravity(self._centre, body_posture(state)[:3].tolist(), self.body.tilt or (0.0, 0.0)),
+            float(state.posture.value[2]),
+        )
         if self.body.looks:
-            rest, pace = footholds.rest, self.support.pace
-            feet = places, [on and leg not in self.missing.obstacles.legs for leg, on in enumerate(down)]
-            self.body.step(state, self.measured, feet=feet, timing=timing, twist=twist, pace=pace, rest=rest)
+            free = [on and leg not in self.missing.obstacles.legs for leg, on in enumerate(footing.down)]
+            self.body.step(tick, self.measured, footing._replace(down=free), transitions, pace=self.support.pace)
             self.ground.choose(state, self.body.reach, footholds)
-        centre = along_gravity(self._centre, body_posture(state)[:3].tolist(), self.body.tilt or (0.0, 0.0))
-        stands = self._find_missing_ground(state, places, down, centre, footholds, dt)
-        self._decide_on_support(places, down, due, centre, dt=dt, swing_time=timing.swing_time)
+        stands = self._find_ground(state, footing, footholds, dt)
+        self._decide_on_support(footing, due, dt, timing.swing_time)
         self.body.roughness.decay(0.0 if standing else dt * timing.frequency)
-        under: list[GroundUnder | None] = [None] * len(down)
-        for leg, place in enumerate(places):
-            if steps[leg] and not (down[leg] and stands[leg] and not (due and due[leg])):
-                under[leg] = self._under(state, leg, place, down=down[leg])
+        under: list[GroundUnder | None] = [None] * len(steps)
+        for leg, (place, on) in enumerate(zip(footing.places, footing.down, strict=True)):
+            if steps[leg] and not (on and stands[leg] and not (due and due[leg])):
+                under[leg] = self._under(state, leg, place, down=on)
         far = self.body.reach.stroke / max(*footholds.placement_radii, 1e-6)
         travel = travel_share(far, self.contacts.age / timing.swing_time)
         inputs = self._feet_inputs(state, (under, stands, steps), travel)._replace(redundant=timing.redundant)
@@ -232,37 +225,38 @@ class FeltGround:
             in_air=self.condition.in_air,
         )
 
-    def _find_missing_ground(
-        self,
-        state: GaitState,
-        places: list[complex],
-        down: list[bool],
-        centre: complex,
-        footholds: FootholdTransfer,
-        dt: float,
-    ) -> list[bool]:
+    def _find_ground(self, state: GaitState, footing: Footing, footholds: FootholdTransfer, dt: float) -> list[bool]:
         """Decide where feet step that find no ground; return which stand, or would, with the robot in the air."""
-        contacts, missing, rest = self.contacts, self.missing, footholds.rest.tolist()
-        feet, tips = (places, down, contacts.standing), bool(missing.tips or missing.places)
-        near = not_sunk(state, self.ground, *feet, reach=self.body.reach, deeper=self.body.roughness.deeper, tips=tips)
-        contacts.find_open(near, places, centre, self.measured.attitude, dt)
+        contacts, missing, deeper = self.contacts, self.missing, self.body.roughness.deeper
+        near = not_sunk(state, self.body, footing, tips=bool(missing.tips or missing.places))
+        contacts.find_open(footing._replace(down=near), self.measured.attitude, dt)
         missing.twist = state.twist.value.tolist()
         if self.condition.carried:
             missing.forget()
             self.ground.plane = FootPlane()
-        held, deeper = [self.condition.in_air or on for on in contacts.standing], self.body.roughness.deeper
-        stands = [on and not missing.steps_back(leg, places[leg]) for leg, on in enumerate(held)]
-        missing.sees(self.ground.holes, rest)
-        waits = self.condition.carried or (self._rests and self.support.held and near == down)
-        raised = partial(self.body.odometry.raised, valid=self.measured, angles=self._commanded)
-        known = state, contacts, self.ground, places, self.body.off, raised
-        searches = [] if waits else searching_feet(*known, down=down, stands=stands)
-        on, radii = [on and stand for on, stand in zip(down, stands, strict=True)], footholds.placement_radii
-        missing.lost, height = contacts.tips(down, places, centre, missing.sinks(deeper)), float(state.posture.value[2])
-        missing.step(searches, places, on, dt, centre=centre, rest=rest, radii=radii, height=height, deeper=deeper)
+        held = [self.condition.in_air or on for on in contacts.standing]
+        stands = [on and not missing.steps_back(leg, footing.places[leg]) for leg, on in enumerate(held)]
+        missing.sees(self.ground.holes, footholds.rest.tolist())
+        waits = self.condition.carried or (self._rests and self.support.held and near == footing.down)
+        searches = [] if waits else self._searches(state, footing, stands)
+        missing.lost = contacts.tips(footing, missing.sinks(deeper))
+        on = [on and stand for on, stand in zip(footing.down, stands, strict=True)]
+        missing.step(searches, footing._replace(down=on), dt, footholds=footholds, deeper=deeper)
         # With the body higher and feet drawn in, legs are steeper beside an edge.
         self.body.roughness.landed(missing.edge)
         return stands
+
+    def _searches(self, state: GaitState, footing: Footing, stands: list[bool]) -> list[Search]:
+        """Return the feet that should stand and feel nothing."""
+        contacts, found = self.contacts, list[Search]()
+        legs = [leg for leg, on in enumerate(footing.down) if on and not stands[leg] and contacts.is_known(leg)]
+        higher = self.body.odometry.raised(legs, self.measured, self._commanded)
+        for leg in legs:
+            place, foot = footing.places[leg], state.felt[leg]
+            depth = self.ground.lowest_near(place) + state.elevation - float(state.ground_height[leg])
+            known = foot.speed < -_FALLS, contacts.seeks(leg), contacts.sunk[leg], higher.get(leg, 0.0)
+            found.append(Search(leg, depth, *known, sunk_at(place, self.body.off)))
+        return found
 
     def _under(self, state: GaitState, leg: int, place: complex, *, down: bool) -> GroundUnder:
         """Return the ground under a foot in the air or without contact, here in the heading frame."""
@@ -277,16 +271,15 @@ class FeltGround:
         found = self.ground.under(place, goal, state.elevation, room, clears=clears)
         return found if back is None else found._replace(place=state.origin + back * heading)
 
-    def _decide_on_support(
-        self, places: list[complex], down: list[bool], due: list[bool] | None, centre: complex, **time: float
-    ) -> None:
+    def _decide_on_support(self, footing: Footing, due: list[bool] | None, dt: float, swing_time: float) -> None:
         """Decide whether feet may lift off, and at which pace the walk goes on; None is due while the robot stands."""
-        bears = [self.contacts.supports(leg) and leg not in self.missing.places for leg in range(len(down))]
-        legs = [leg for leg, on in enumerate(down) if on and not (due and due[leg]) and bears[leg]]
-        stays = self.support.holds(legs, places, centre, anew=not self.body.since)
-        lifts, fallen, missing = any(due or ()), self.condition.fallen, self.missing
+        missing, lifts, fallen = self.missing, any(due or ()), self.condition.fallen
+        bears = [self.contacts.supports(leg) and leg not in missing.places for leg in range(len(footing.down))]
+        legs = [leg for leg, on in enumerate(footing.down) if on and not (due and due[leg]) and bears[leg]]
+        stays = self.support.holds(legs, footing, anew=not self.body.since)
         held = due is None or (stays and not (lifts and any((self.body.slope.refuses, missing.refuses, missing.tips))))
-        self.support.step(stays=held and not fallen, lifts=lifts and not fallen, most=self.missing.pace, **time)
+        stays, lifts = held and not fallen, lifts and not fallen
+        self.support.step(stays=stays, lifts=lifts, dt=dt, swing_time=swing_time, most=missing.pace)
 
     @property
     def limitations(self) -> tuple[Limitation, ...]:

@@ -10,7 +10,7 @@ import numpy as np
 
 from tarsus.control.readings import RollPitch
 from tarsus.control.sensing.contact_estimator import ContactEstimator
-from tarsus.control.terrain.support import holds
+from tarsus.control.terrain.support import Footing, holds
 
 if TYPE_CHECKING:
     from jaxtyping import Float
@@ -148,42 +148,32 @@ class FootContacts:
         for leg, on in enumerate(down):
             self._searched[leg] = self._searched[leg] + dt if on and not (rests or self.standing[leg]) else 0.0
 
-    def find_open(
-        self,
-        down: Sequence[bool],
-        places: Sequence[complex],
-        centre: complex,
-        tilt: RollPitch | None,
-        dt: float,
-    ) -> None:
+    def find_open(self, footing: Footing, tilt: RollPitch | None, dt: float) -> None:
         """Find a switch that stays open: a foot that pushes on the ground lifts the body off others.
 
         Parameters
         ----------
-        down : sequence of bool
-            Which feet should stand.
-        places, centre : sequence of complex, complex
-            The feet and the centre of mass, x + iy in the heading frame [m].
+        footing : Footing
+            The feet that should stand.
         tilt : (roll, pitch) or None
             Measured [rad]; None where it is not.
         dt : float
             Time since the last tick [s].
         """
-        shaken = any(on and 0.0 < time <= _GRACE for on, time in zip(down, self._without, strict=True))
-        for leg, on in enumerate(down):
+        shaken = any(on and 0.0 < time <= _GRACE for on, time in zip(footing.down, self._without, strict=True))
+        for leg, on in enumerate(footing.down):
             if self._without[leg] <= 0.0 or tilt is None:
                 self._tilts[leg] = tilt or (0.0, 0.0)
-            self.sunk[leg] = sunk_at(places[leg], tilt or (0.0, 0.0), self._tilts[leg])
+            self.sunk[leg] = sunk_at(footing.places[leg], tilt or (0.0, 0.0), self._tilts[leg])
             if on and shaken and self._without[leg] > _GRACE:
                 lifts = 1.0 if tilt is None else -self.sunk[leg] / _LIFTS
                 self._evidence[leg] += dt * min(lifts, _MOST_LIFT) * (lifts >= 1.0)
         if tilt is not None:
-            self._balance(down, places, centre, tilt, dt)
+            self._balance(footing, tilt, dt)
 
-    def _balance(
-        self, down: Sequence[bool], places: Sequence[complex], centre: complex, tilt: RollPitch, dt: float
-    ) -> None:
+    def _balance(self, footing: Footing, tilt: RollPitch, dt: float) -> None:
         """Find a switch that stays open: a robot that does not tip stands on a foot that it does not feel."""
+        places, down, centre, _ = footing
         missing = [leg for leg, on in enumerate(down) if on and not self.standing[leg]]
         standing = [places[leg] for leg, on in enumerate(down) if on and leg not in missing]
         if not missing or holds(standing, centre):
@@ -198,22 +188,19 @@ class FootContacts:
         if self._unheld > _UNHELD and self._without[longest] > _NEVER:
             self._evidence[longest], self.standing[longest] = math.inf, True
 
-    def tips(self, down: Sequence[bool], places: Sequence[complex], centre: complex, most: float) -> int | None:
+    def tips(self, footing: Footing, most: float) -> int | None:
         """Return the leg at whose foot the robot tips, if it does: it sinks there, and the other feet do not hold it.
 
         Parameters
         ----------
-        down : sequence of bool
-            Which feet should stand.
-        places, centre : sequence of complex, complex
-            The feet and the centre of mass, x + iy in the heading frame [m].
-        most : float
-            By how much a body that does not tip sinks at a foot without contact at most [m].
+        footing, most : Footing, float
+            The feet that should stand; by how much a body that does not tip sinks at a foot without contact at most
+            [m].
         """
-        legs = [leg for leg, on in enumerate(down) if on]
+        legs = [leg for leg, on in enumerate(footing.down) if on]
         sinks = [leg for leg in legs if not self._bears(leg) and self.sunk[leg] > most and self.is_known(leg)]
-        bears = [places[leg] for leg in legs if self._bears(leg)]
-        if not (sinks and bears) or holds(bears, centre):
+        bears = [footing.places[leg] for leg in legs if self._bears(leg)]
+        if not (sinks and bears) or holds(bears, footing.centre):
             return None
         return max(sinks, key=self.sunk.__getitem__)
 

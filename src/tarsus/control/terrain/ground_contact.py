@@ -6,23 +6,21 @@ import cmath
 import math
 from typing import TYPE_CHECKING, Any
 
-from tarsus.control.readings import RollPitch
 from tarsus.control.sensing.swing_monitor import USUAL_LAG
 from tarsus.control.terrain.body_motion import BodyMotion
-from tarsus.control.terrain.foot_contacts import FootContacts, Search, sunk_at
-from tarsus.control.terrain.ground_map import GroundMap
+from tarsus.control.terrain.foot_contacts import FootContacts
 from tarsus.control.terrain.missing_ground import MissingGround
 from tarsus.control.terrain.reach import Reach
-from tarsus.control.terrain.support import HALTING
+from tarsus.control.terrain.support import HALTING, Footing
 from tarsus.control.walk.felt_feet import FeltFoot
 from tarsus.control.walk.state import GaitState
 from tarsus.control.walk.step_timing import StepTiming
 from tarsus.control.walk.stepper import land
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping, Sequence
+    from collections.abc import Sequence
 
-__all__ = ["met_ground", "not_sunk", "searching_feet"]
+__all__ = ["met_ground", "not_sunk", "put_down"]
 
 # Swing phases from which on contact is a collision, and from which on it is the ground.
 _CLEAR, _LANDING = 0.12, 0.55
@@ -40,38 +38,23 @@ _SHORT, _PAST, _DRAWS_BACK = 0.02, 0.01, 1.0
 _HANGS, _HANGS_LOW = 0.05, 0.9
 # Nor does one without contact that is this far over the expected ground, as before a wall: it is still to go down [m].
 _HIGH = 0.03
-# A foot that goes down faster has not come to the end of its reach, which sinks with the body [m/s].
-_FALLS = 0.1
 
 
 def met_ground(
-    state: GaitState,
-    contacts: FootContacts,
-    ground: GroundMap,
-    body: BodyMotion,
-    missing: MissingGround,
-    *,
-    stopped: Sequence[int],
-    timing: StepTiming,
-    pace: float,
-    in_air: bool,
+    state: GaitState, body: BodyMotion, missing: MissingGround, *, stopped: list[int], timing: StepTiming, pace: float
 ) -> tuple[GaitState, list[int]]:
     """Return the gait state in which feet that meet ground have landed or rise again, and which have landed.
 
     Parameters
     ----------
-    state, contacts : GaitState, FootContacts
-        The gait state; the contacts.
-    ground, body : GroundMap, BodyMotion
-        Where ground is expected; its roughness takes note of footholds and collisions.
-    missing, stopped : MissingGround, sequence of int
+    state, body : GaitState, BodyMotion
+        The gait state; contacts, expected ground and reach. Its roughness takes note of footholds and collisions.
+    missing, stopped : MissingGround, list of int
         Decides where feet that are stopped again try next; legs that are stopped on their way.
-    timing : StepTiming
-        The gait and its frequency.
-    pace, in_air : float, bool
-        Rate of the steps, 0 to 1; whether the robot is in the air.
+    timing, pace : StepTiming, float
+        The gait and its frequency; rate of the steps, 0 to 1.
     """
-    reach, landed, elevation = body.reach, list[int](), state.elevation
+    contacts, reach, landed, elevation = body.contacts, body.reach, list[int](), state.elevation
     turn = cmath.exp(-1j * state.yaw)
     places = ((state.foot - state.origin) * turn).tolist()
     for leg, (down, phase) in enumerate(zip(state.down.tolist(), state.swing_phase.tolist(), strict=True)):
@@ -94,7 +77,7 @@ def met_ground(
                 continue
             # It touched the ground a moment ago, when it was higher.
             over = float(state.ground_height[leg]) - elevation - tells * contacts.age * min(foot.speed, 0.0)
-            expected = ground.at(places[leg])
+            expected = body.ground.at(places[leg])
             if tells or over <= expected + _ROUNDING:
                 if tells:
                     # A body that sinks at the foot by its tilt meets the ground sooner.
@@ -105,11 +88,19 @@ def met_ground(
         elif ((touches and contacts.lifted[leg]) or leg in stopped) and not leaves and _collides(state, leg, contacts):
             body.roughness.collided()
             state = _rising_again(state, leg, _highest(state, leg, reach), timing, scale=reach.scale)
-    return _put_down(state, landed, timing, pace) if missing.tips or in_air else (state, landed)
+    return state, landed
 
 
-def _put_down(state: GaitState, landed: list[int], timing: StepTiming, pace: float) -> tuple[GaitState, list[int]]:
-    """Return the state, and which feet have landed, with all feet put down: the robot tips, or is in the air."""
+def put_down(state: GaitState, *, timing: StepTiming, pace: float) -> tuple[GaitState, list[int]]:
+    """Return the state with all feet put down where they are, and which swung.
+
+    Parameters
+    ----------
+    state : GaitState
+        The gait state.
+    timing, pace : StepTiming, float
+        The gait and its frequency; rate of the steps, 0 to 1.
+    """
     swings, number = [leg for leg, on in enumerate(state.down.tolist()) if not on], state.step_number.copy()
     # Feet that are far from their footholds are still due to lift off.
     number[(state.swing_phase < _LANDING) & ~state.down] -= 1
@@ -117,7 +108,7 @@ def _put_down(state: GaitState, landed: list[int], timing: StepTiming, pace: flo
     for leg in swings:
         state = _landed(state, leg, timing, pace)
         state = state._replace(felt=_with(state.felt, leg, speed=0.0, acceleration=0.0))
-    return state, landed + swings
+    return state, swings
 
 
 def _landed(state: GaitState, leg: int, timing: StepTiming, pace: float) -> GaitState:
@@ -191,52 +182,7 @@ def _with(feet: Sequence[FeltFoot], leg: int, **values: Any) -> list[FeltFoot]:
     return [foot._replace(**values) if index == leg else foot for index, foot in enumerate(feet)]
 
 
-def searching_feet(
-    state: GaitState,
-    contacts: FootContacts,
-    ground: GroundMap,
-    places: Sequence[complex],
-    off: RollPitch,
-    raised: Callable[[list[int]], Mapping[int, float]],
-    *,
-    down: Sequence[bool],
-    stands: Sequence[bool],
-) -> list[Search]:
-    """Return the feet that should stand and feel nothing.
-
-    Parameters
-    ----------
-    state, contacts : GaitState, FootContacts
-        The gait state; the contacts.
-    ground, places : GroundMap, sequence of complex
-        Where ground is expected; where the feet are, in the heading frame [m].
-    off, raised : (roll, pitch), callable
-        By how much the body is off the attitude to keep [rad]; returns by how much the feet of some legs are higher
-        than commanded, of those that are measured [m].
-    down, stands : sequence of bool
-        Which feet should stand, and which do.
-    """
-    legs = [leg for leg, on in enumerate(down) if on and not stands[leg] and contacts.is_known(leg)]
-    found, higher = list[Search](), raised(legs)
-    for leg in legs:
-        place, foot = places[leg], state.felt[leg]
-        depth = ground.lowest_near(place) + state.elevation - float(state.ground_height[leg])
-        known = foot.speed < -_FALLS, contacts.seeks(leg), contacts.sunk[leg], higher.get(leg, 0.0)
-        found.append(Search(leg, depth, *known, sunk_at(place, off)))
-    return found
-
-
-def not_sunk(
-    state: GaitState,
-    ground: GroundMap,
-    places: Sequence[complex],
-    down: Sequence[bool],
-    stands: Sequence[bool],
-    *,
-    reach: Reach,
-    deeper: float,
-    tips: bool,
-) -> list[bool]:
+def not_sunk(state: GaitState, body: BodyMotion, footing: Footing, *, tips: bool) -> list[bool]:
     """Return which feet should stand and may bear load that is not felt.
 
     None may while one of them is not close to the ground, or at the end of its reach: its leg may rest on an edge, or
@@ -244,20 +190,15 @@ def not_sunk(
 
     Parameters
     ----------
-    state, ground : GaitState, GroundMap
-        The gait state; where ground is expected.
-    places, down, stands : sequence of complex, sequence of bool
-        Where the feet are, in the heading frame [m]; which should stand, and which do.
-    reach : Reach
-        How low each leg reaches.
-    deeper, tips : float, bool
-        How much deeper ground may be than expected [m]; whether the robot tips or feet step back: then, none may.
+    state, body : GaitState, BodyMotion
+        The gait state; contacts, expected ground, roughness and reach.
+    footing, tips : Footing, bool
+        The feet that should stand; whether the robot tips or feet step back: then, none may.
     """
-    scale, height = reach.scale, float(state.posture.value[2])
-    most = min(scale * _HANGS + deeper, _HANGS_LOW * height)
-    near = list[bool]()
+    ground, scale, stands, near = body.ground, body.reach.scale, body.contacts.standing, list[bool]()
+    most = min(scale * _HANGS + body.roughness.deeper, _HANGS_LOW * footing.height)
     for leg, over in enumerate((state.ground_height - state.elevation).tolist()):
-        place, high = places[leg], math.inf if stands[leg] else scale * _HIGH
-        hangs = ground.is_hole(place) or (reach.hangs(leg, over) and not stands[leg])
-        near.append(down[leg] and -most < over - ground.at(place) < high and not hangs)
-    return near if near == list(down) and not tips else [False] * len(near)
+        place, high = footing.places[leg], math.inf if stands[leg] else scale * _HIGH
+        hangs = ground.is_hole(place) or (body.reach.hangs(leg, over) and not stands[leg])
+        near.append(footing.down[leg] and -most < over - ground.at(place) < high and not hangs)
+    return near if near == footing.down and not tips else [False] * len(near)

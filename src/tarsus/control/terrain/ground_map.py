@@ -21,7 +21,7 @@ from tarsus.gait.ground_heights import TRIED, GroundHeights, better_foothold, is
 from tarsus.gait.stance.stance_geometry import SWING_HEIGHT
 
 if TYPE_CHECKING:
-    from jaxtyping import Complex, Shaped
+    from jaxtyping import Shaped
 
 __all__ = ["GroundMap"]
 
@@ -97,19 +97,13 @@ class GroundMap:
         self._tie()
 
     def step(
-        self,
-        feet: Sequence[tuple[complex, float]],
-        tilt: RollPitch | None,
-        state: GaitState,
-        dt: float,
-        *,
-        drift: complex,
+        self, feet: list[tuple[complex, float]], tilt: RollPitch | None, state: GaitState, dt: float, *, drift: complex
     ) -> None:
         """Fit the plane to the standing feet, and tie the known heights to them.
 
         Parameters
         ----------
-        feet : sequence of (complex, float)
+        feet : list of (complex, float)
             The feet that bear load: where, and how high, in the heading frame [m].
         tilt : (roll, pitch) or None
             By how much the heading frame is tilted [rad].
@@ -231,13 +225,7 @@ class GroundMap:
         return bool(lowest_near(self._lies, np.array(place), within=_EDGE) < self.plane.at(place) - self._deepest)
 
     def under(
-        self,
-        start: complex,
-        foothold: complex,
-        elevation: float,
-        room: tuple[float | None, float],
-        *,
-        clears: bool = False,
+        self, start: complex, foothold: complex, elevation: float, room: tuple[float | None, float], *, clears: bool
     ) -> GroundUnder:
         """Return the ground under a foot and on its way.
 
@@ -260,28 +248,21 @@ class GroundMap:
         way = elevation + float(on_way(self.expected, start, foothold).max())
         return under._replace(way=way, steep=is_steep(self.expected, start, foothold), clears=False)
 
-    def rises(
-        self,
-        rises: list[float],
-        rest: Complex[np.ndarray, "legs"],
-        strokes: Complex[np.ndarray, "legs"],
-        *,
-        looks: bool = True,
-    ) -> tuple[list[float], list[float]]:
+    def rises(self, rises: list[float], reach: Reach, *, looks: bool = True) -> tuple[list[float], list[float]]:
         """Return least and greatest height of the ground under each leg, now and at its next footholds [m].
 
         Parameters
         ----------
         rises : list of float
             The height now, over the plane's at the origin [m].
-        rest, strokes : complex array, shape (legs,)
-            Rest footholds, and strokes about them, in the heading frame [m].
+        reach : Reach
+            Rest footholds, and strokes about them.
         looks : bool
             Whether to look ahead: not while a foot looks for the ground that it should stand on.
         """
         if not (self.given and looks):
             return rises, rises
-        ahead = self.expected(rest + _NEXT[:, None] * strokes) - self.plane.height
+        ahead = self.expected(reach.rest + _NEXT[:, None] * reach.strokes) - self.plane.height
         return np.minimum(ahead.min(axis=0), rises).tolist(), np.maximum(ahead.max(axis=0), rises).tolist()
 
     def body_rise(self, half: Sequence[float], height: float) -> float:

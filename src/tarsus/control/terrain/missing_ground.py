@@ -9,7 +9,8 @@ from tarsus.control.limitation import Limitation, LimitationKind
 from tarsus.control.limiter.protocol import TwistGrant, TwistRequest, leads_towards
 from tarsus.control.terrain.foot_contacts import Search
 from tarsus.control.terrain.obstacles import Obstacles
-from tarsus.control.terrain.support import holds
+from tarsus.control.terrain.support import Footing, holds
+from tarsus.control.transition.foothold_transfer import FootholdTransfer
 
 __all__ = ["SLOW", "MissingGround"]
 
@@ -120,17 +121,7 @@ class MissingGround:
         return self._tries[leg] > len(_BACK)
 
     def step(
-        self,
-        searches: Sequence[Search],
-        feet: Sequence[complex],
-        stands: Sequence[bool],
-        dt: float,
-        *,
-        centre: complex,
-        rest: Sequence[complex],
-        radii: Sequence[float],
-        height: float,
-        deeper: float,
+        self, searches: Sequence[Search], footing: Footing, dt: float, *, footholds: FootholdTransfer, deeper: float
     ) -> None:
         """Decide for a tick.
 
@@ -138,15 +129,12 @@ class MissingGround:
         ----------
         searches : sequence of Search
             Feet that should stand and feel nothing.
-        feet, stands : sequence of complex, sequence of bool
-            Where the feet are, in the heading frame [m]; which feet stand.
-        dt, centre : float, complex
-            Length of the tick [s]; the centre of mass [m].
-        rest, radii : sequence of complex, sequence of float
-            Rest footholds [m]; how far from these feet may stand [m].
-        height, deeper : float
-            Body height, and how much deeper ground may be than expected [m].
+        footing, dt : Footing, float
+            The feet, and which of them stand; length of the tick [s].
+        footholds, deeper : FootholdTransfer, float
+            Rest footholds, and how far from these feet may stand; how much deeper ground may be than expected [m].
         """
+        (feet, stands, centre, height), rest = footing, footholds.rest.tolist()
         self._walked = self._walked if searches else self.twist
         beside = self.obstacles.go_on(lambda leg: not self.steps_back(leg, feet[leg]))
         self.places |= beside
@@ -182,8 +170,12 @@ class MissingGround:
                 self._tip(way)
             if missing and not (self.steps_back(leg, feet[leg]) or self.gives_up(leg)):
                 self.edge = depth if held_up else self.edge
-                self._step_back(leg, depth, way, rest[leg], radii[leg], sure=sure and not self.edge)
-        self._since = 0.0 if self.places else self._since + dt
+                self._step_back(leg, depth, way, footholds, sure=sure and not self.edge)
+        self._back_off(footing, dt)
+
+    def _back_off(self, footing: Footing, dt: float) -> None:
+        """Decide with which velocity the body backs off, and whether the walk goes on where it has waited."""
+        (feet, stands, centre, _), self._since = footing, 0.0 if self.places else self._since + dt
         speed, backed = self._scale * _SPEED, self._backed < self._scale * _BACKS
         if not self.places:
             # A robot that tips where a foot sinks goes back at once.
@@ -205,12 +197,13 @@ class MissingGround:
             self.back = -speed * self._way
             self._backed += speed * dt
 
-    def _step_back(self, leg: int, depth: float, way: complex, rest: complex, radius: float, *, sure: bool) -> None:
+    def _step_back(self, leg: int, depth: float, way: complex, footholds: FootholdTransfer, *, sure: bool) -> None:
         """Choose a place behind its rest foothold for a foot on this way that finds no ground at this depth [m]."""
         self._tries[leg] += 1
         if self._tries[leg] == 1 and not self.refuses:
             self._way = way
-        self.places[leg] = rest - _BACK[min(self._tries[leg], len(_BACK)) - 1] * radius * self._way
+        back = _BACK[min(self._tries[leg], len(_BACK)) - 1] * footholds.placement_radii[leg]
+        self.places[leg] = complex(footholds.rest[leg]) - back * self._way
         # Ground that is seen and not reached from here may be reached with other footholds.
         reached, shallow = f"no ground within {1e3 * depth:.0f} mm below the other feet", depth < _SHALLOW
         self._cause = self._names[leg], "the ground is lower than the leg reaches" if shallow else reached

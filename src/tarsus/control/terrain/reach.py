@@ -2,18 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from tarsus.control.tick_state import TickState
 from tarsus.gait.foot_plane import FootPlane
 from tarsus.gait.stance.reachable_heights import STROKE_PLACES, reachable_heights
 from tarsus.gait.stance.stance_geometry import SWING_HEIGHT
 from tarsus.robot.robot import Robot
 
 if TYPE_CHECKING:
-    from jaxtyping import Complex, Float
+    from jaxtyping import Complex
 
 __all__ = ["Reach"]
 
@@ -39,8 +39,8 @@ class Reach:
     ----------
     lowest, highest : list of float
         Least and greatest height of each foot in the heading frame [m].
-    strokes : complex array, shape (legs,)
-        Stroke of each foot [m].
+    rest, strokes : complex array, shape (legs,)
+        Rest foothold and stroke of each foot, in the heading frame [m].
     stroke, scale : float
         Half the longest stroke [m]; by how much lengths and speeds are smaller than given, on short legs, 0 to 1.
     """
@@ -48,38 +48,30 @@ class Reach:
     def __init__(self, robot: Robot) -> None:
         self.lowest, self.highest = [0.0] * robot.legs, [0.0] * robot.legs
         self.stroke, self.strokes = 0.0, np.zeros(robot.legs, dtype=complex)
+        self.rest: Complex[np.ndarray, "legs"] = self.strokes
         # Greatest height of each foot at the places of its stroke [m].
         self._tops = [(0.0,) * len(STROKE_PLACES)] * robot.legs
         self.scale = min(float((robot.femur + robot.tibia).mean()) / _USUAL_LEG, 1.0)
         self._robot = robot
         self._key: tuple[float, ...] = ()
-        self._rest: Complex[np.ndarray, "legs"] | None = None
 
-    def update(
-        self,
-        posture: Float[np.ndarray, "_"],
-        rest: Complex[np.ndarray, "legs"],
-        twist: Float[np.ndarray, "3"],
-        stance_time: float,
-    ) -> None:
+    def update(self, tick: TickState, rest: Complex[np.ndarray, "legs"], stance_time: float) -> None:
         """Update the heights.
 
         Parameters
         ----------
-        posture : array, shape (7,) or more
-            Posture of the body.
+        tick : TickState
+            Posture of the body, and the twist that is followed.
         rest : complex array, shape (legs,)
             Rest footholds in the heading frame [m].
-        twist : array, shape (3,)
-            The twist that is followed [m/s, m/s, rad/s].
         stance_time : float
             Duration of a stance [s].
         """
-        vx, vy, wz = twist.tolist()
+        (vx, vy, wz), posture = tick.twist.tolist(), tick.gait.posture.value
         x, y, arc = (round(speed * stance_time / _STROKE_STEP) * _STROKE_STEP for speed in (vx, vy, wz * _TURNING_ARM))
         key = (x, y, arc, *posture[:SWING_HEIGHT].round(3).tolist())
-        if key != self._key or rest is not self._rest:
-            self._key, self._rest, strokes = key, rest, complex(x, y) + 1j * arc / _TURNING_ARM * rest
+        if key != self._key or rest is not self.rest:
+            self._key, self.rest, strokes = key, rest, complex(x, y) + 1j * arc / _TURNING_ARM * rest
             self.stroke, self.strokes = float(np.abs(strokes).max()) / 2, strokes
             lowest, highest = reachable_heights(self._robot, posture, rest, strokes)
             # Ends of strokes beyond the limits of the coxa are not walked; a leg that reaches nowhere keeps its reach.
@@ -106,9 +98,9 @@ class Reach:
     def _highest_at(self, leg: int, place: complex) -> float:
         """Return the greatest height of a foot at a place, by how far along its stroke that is [m]."""
         stroke = complex(self.strokes[leg])
-        if self._rest is None or not stroke:
+        if not stroke:
             return self.highest[leg]
-        ahead = ((place - complex(self._rest[leg])) * stroke.conjugate()).real / abs(stroke) ** 2
+        ahead = ((place - complex(self.rest[leg])) * stroke.conjugate()).real / abs(stroke) ** 2
         rear, middle, front = self._tops[leg]
         share = min(2 * abs(ahead), 1.0)
         return middle + share * ((front if ahead > 0 else rear) - middle)
@@ -128,30 +120,20 @@ class Reach:
         """Return whether a leg with its foot at a height in the heading frame [m] is at the end of its reach."""
         return height < self.lowest[leg] + _HANGING
 
-    def rises(
-        self,
-        plane: FootPlane,
-        rest: Complex[np.ndarray, "legs"],
-        over: Sequence[float],
-        *,
-        bears: Sequence[int],
-        seeking: Sequence[bool],
-    ) -> list[float]:
+    def rises(self, plane: FootPlane, over: list[float], *, bears: list[int], hanging: list[int]) -> list[float]:
         """Return the height of the ground under each leg, as far as it is known, over the plane's at the origin [m].
 
         Parameters
         ----------
         plane : FootPlane
             The plane of the standing feet.
-        rest : complex array, shape (legs,)
-            Rest footholds in the heading frame [m].
-        over, bears : sequence of float, sequence of int
+        over, bears : list of float, list of int
             Height of each foot [m]; legs whose feet bear load.
-        seeking : sequence of bool
-            Whether each foot should stand and has no contact: with the body lower it may find ground.
+        hanging : list of int
+            Legs at the end of their reach whose feet should stand and have no contact: with the body lower they may
+            find ground.
         """
-        known = [over[leg] if leg in bears else plane.at(complex(rest[leg])) for leg in range(len(rest))]
-        for leg, seeks in enumerate(seeking):
-            if seeks and self.hangs(leg, over[leg]):
-                known[leg] = self.lowest[leg] - _LOWER
+        known = [over[leg] if leg in bears else plane.at(place) for leg, place in enumerate(self.rest.tolist())]
+        for leg in hanging:
+            known[leg] = self.lowest[leg] - _LOWER
         return [height - plane.height for height in known]

@@ -5,10 +5,11 @@ from __future__ import annotations
 import cmath
 import math
 from collections.abc import Sequence
+from typing import NamedTuple
 
 from tarsus.control.readings import RollPitch
 
-__all__ = ["HALTING", "Support", "along_gravity", "holds"]
+__all__ = ["HALTING", "Footing", "Support", "along_gravity", "holds"]
 
 # Rates at which the pace falls and rises [1/s].
 _FALL, _RISE = 10.0, 6.0
@@ -20,6 +21,27 @@ _GRACE = 0.15
 _LEAST_ANGLE = 0.02
 HALTING = 0.5
 """Below this pace the robot waits for support."""
+
+
+class Footing(NamedTuple):
+    """Feet and body of a walk in a tick, in the heading frame.
+
+    Attributes
+    ----------
+    places : list of complex
+        Where the feet are, x + iy [m].
+    down : list of bool
+        Which feet should stand.
+    centre : complex
+        Where the centre of mass is above them, along gravity [m].
+    height : float
+        Commanded height of the body [m].
+    """
+
+    places: list[complex]
+    down: list[bool]
+    centre: complex
+    height: float
 
 
 def holds(feet: Sequence[complex], centre: complex) -> bool:
@@ -74,18 +96,18 @@ class Support:
         """Whether the robot waits until its feet hold it."""
         return self.pace < HALTING
 
-    def holds(self, legs: list[int], places: Sequence[complex], centre: complex, *, anew: bool) -> bool:
+    def holds(self, legs: list[int], footing: Footing, *, anew: bool) -> bool:
         """Return whether feet hold the robot; they are looked at again where they are others, or when asked to.
 
         Parameters
         ----------
-        legs, places : list of int, sequence of complex
-            Legs whose feet bear load; all feet, x + iy [m].
-        centre, anew : complex, bool
-            The centre of mass [m]; whether to look at the same feet again.
+        legs, footing : list of int, Footing
+            Legs whose feet bear load; all feet.
+        anew : bool
+            Whether to look at the same feet again.
         """
         if anew or legs != self._bearing:
-            self._bearing, self.held = legs, holds([places[leg] for leg in legs], centre)
+            self._bearing, self.held = legs, holds([footing.places[leg] for leg in legs], footing.centre)
         return self.held
 
     def step(self, *, stays: bool, lifts: bool, dt: float, swing_time: float, most: float = 1.0) -> None:

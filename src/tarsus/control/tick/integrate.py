@@ -56,9 +56,7 @@ def _step_inputs(walk: WalkComponents, tick: TickState, dt: float) -> StepInputs
     felt, offsets = None, walk.no_offset
     if state.felt:
         footholds.shift(walk.ground.body.stance.shift)
-        felt = walk.ground.inputs(
-            state, dt, timing=timing, twist=tick.twist, footholds=footholds, excluded=excluded, standing=standing
-        )
+        felt = walk.ground.inputs(tick, transitions, excluded, dt)
         hold_feet = hold_feet or walk.ground.support.waits
         if walk.ground.offsets is not None:
             offsets = walk.ground.offsets * state.down
