@@ -333,26 +333,28 @@ def test_a_foot_that_slides_is_told_by_the_others():
 
 def test_contacts_come_from_switches_or_else_from_load_cells():
     loads = FootLoads(STRIDER, None)
-    angles, gait = WalkController(STRIDER).angles, {"down": np.ones(6, dtype=bool), "phase": np.zeros(6)}
+    controller = WalkController(STRIDER)
+    angles, state = controller.angles, controller._tick.gait
     pressed = ValidReadings(forces=((0.0, 0.0, 5.0), None, *((0.0, 0.0, 0.1),) * 4))
-    assert loads.contacts(pressed, angles, 0.01, **gait) == [True, None, *[False] * 4]
+    assert loads.contacts(pressed, angles, state, 0.01) == [True, None, *[False] * 4]
     switched = pressed._replace(contacts=(False,) * 6)
-    assert loads.contacts(switched, angles, 0.01, **gait) == (False,) * 6
+    assert loads.contacts(switched, angles, state, 0.01) == (False,) * 6
     driven = ValidReadings(torques=tuple((0.0, 1.0, 0.5) for _ in range(6)))
     # Joint torques do not tell contacts: legs press against each other, and a swinging leg is accelerated.
-    assert loads.contacts(driven, angles, 0.01, **gait) is None
-    assert loads.contacts(ValidReadings(), angles, 0.01, **gait) is None
+    assert loads.contacts(driven, angles, state, 0.01) is None
+    assert loads.contacts(ValidReadings(), angles, state, 0.01) is None
 
 
 def test_compliant_feet_yield_to_measured_forces_or_else_to_joint_torques():
-    angles, stand = WalkController(STRIDER).angles, {"feet": np.array(FEET), "stands": [True] * 6}
+    controller = WalkController(STRIDER)
+    angles, state = controller.angles, controller._tick.gait
     pressed = ValidReadings(forces=((0.0, 0.0, 50.0), *((0.0, 0.0, 0.1),) * 5))
     driven = ValidReadings(torques=tuple((0.0, 1.0, 0.5) for _ in range(6)))
-    assert FootLoads(STRIDER, None).offsets(pressed, angles, 0.01, **stand) is None
+    assert FootLoads(STRIDER, None).offsets(pressed, angles, state, 0.01) is None
 
     def offsets(readings):
         soft = FootLoads(STRIDER, Admittance(mass=1.0, damping=400.0, stiffness=400.0))
-        return soft.offsets(readings, angles, 0.01, **stand)
+        return soft.offsets(readings, angles, state, 0.01)
 
     np.testing.assert_array_equal(offsets(ValidReadings()), np.zeros(6))
     assert offsets(pressed)[0] > 0 > offsets(pressed)[1:].max()

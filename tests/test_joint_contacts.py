@@ -70,8 +70,8 @@ def test_servos_that_follow_at_once_tell_no_contacts():
     estimator = JointContacts(STRIDER)
     for _ in range(200):
         angles = controller.step((0.1, 0.0, 0.0), DT)
-        state = controller._tick.gait
-        found = estimator.contacts(angles.tolist(), angles, DT, age=0.0, down=state.down, phase=state.swing_phase)
+        valid = ValidReadings(joint_angles=angles.tolist())
+        found = estimator.contacts(valid, angles, controller._tick.gait, DT)
         contacts.append(found)
     assert not any(contacts)
 
@@ -85,7 +85,7 @@ def test_servos_that_are_slower_than_those_of_the_file_stop_no_swing():
         state = controller._tick.gait
         late.append(angles)
         measured = late.pop(0) + 0.02 * np.outer(state.down, (0.0, 1.0, 0.0))
-        found = estimator.contacts(measured.tolist(), angles, DT, age=0.0, down=state.down, phase=state.swing_phase)
+        found = estimator.contacts(ValidReadings(joint_angles=measured.tolist()), angles, state, DT)
         # By then its lag is learnt.
         if tick > 300 and found is not None:
             told += 1
@@ -97,11 +97,11 @@ def test_servos_that_are_slower_than_those_of_the_file_stop_no_swing():
 
 
 def test_a_leg_without_a_measured_angle_leaves_contacts_unknown():
-    estimator, angles = JointContacts(STRIDER), tarsus.WalkController(STRIDER).angles
-    down, phase = np.ones(6, dtype=bool), np.zeros(6)
+    estimator, controller = JointContacts(STRIDER), tarsus.WalkController(STRIDER)
+    angles, state = controller.angles, controller._tick.gait
     for measured in ([None, *angles.tolist()[1:]], angles.tolist()):
         for _ in range(9):
-            assert estimator.contacts(measured, angles, DT, age=0.0, down=down, phase=phase) is None
+            assert estimator.contacts(ValidReadings(joint_angles=measured), angles, state, DT) is None
 
 
 @pytest.mark.parametrize("servos", ["known", "unknown"])
@@ -109,10 +109,10 @@ def test_joint_angles_are_the_last_choice(servos):
     robot = STRIDER
     if servos == "unknown":
         robot = robot.replace(servos=tuple((None,) * 3 for _ in range(6)))
-    loads, angles = FootLoads(robot, None), tarsus.WalkController(STRIDER).angles
-    gait = {"down": np.ones(6, dtype=bool), "phase": np.zeros(6)}
+    loads, controller = FootLoads(robot, None), tarsus.WalkController(STRIDER)
+    angles, state = controller.angles, controller._tick.gait
     valid = ValidReadings(joint_angles=tuple(angles.tolist()))
-    assert loads.contacts(valid, angles, DT, **gait) is None
+    assert loads.contacts(valid, angles, state, DT) is None
     switched = valid._replace(contacts=(True,) * 6)
-    assert loads.contacts(switched, angles, DT, **gait) == (True,) * 6
+    assert loads.contacts(switched, angles, state, DT) == (True,) * 6
     assert not loads.estimated

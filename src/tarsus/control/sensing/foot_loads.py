@@ -10,12 +10,13 @@ import numpy as np
 from tarsus.control.pose.admittance import Admittance, AdmittanceFilter
 from tarsus.control.readings import ValidReadings, Vector
 from tarsus.control.sensing.joint_contacts import JointContacts
+from tarsus.control.walk.state import GaitState
 from tarsus.kinematics.mass import known_weight
 from tarsus.load.foot_force import FootForceEstimator, balanced_forces
 from tarsus.robot.robot import Robot
 
 if TYPE_CHECKING:
-    from jaxtyping import Bool, Complex, Float
+    from jaxtyping import Float
 
 __all__ = ["FootLoads"]
 
@@ -60,13 +61,7 @@ class FootLoads:
         return _ESTIMATED_DESCENT if self.estimated else _DESCENT
 
     def contacts(
-        self,
-        valid: ValidReadings,
-        angles: Float[np.ndarray, "legs 3"],
-        dt: float,
-        *,
-        down: Bool[np.ndarray, "legs"],
-        phase: Float[np.ndarray, "legs"],
+        self, valid: ValidReadings, angles: Float[np.ndarray, "legs 3"], state: GaitState, dt: float
     ) -> Sequence[bool | None] | None:
         """Return which feet touch the ground: from switches, else load cells, else joint angles; None where unknown.
 
@@ -78,12 +73,8 @@ class FootLoads:
             The readings.
         angles : array, shape (legs, 3)
             Joint angles that were commanded in the last tick [rad].
-        dt : float
-            Time since the last tick [s].
-        down : array of bool, shape (legs,)
-            Which feet should stand.
-        phase : array, shape (legs,)
-            Swing phase of the others.
+        state, dt : GaitState, float
+            The gait state; time since the last tick [s].
         """
         self.estimated, found = False, None
         if valid.contacts is not None:
@@ -92,18 +83,12 @@ class FootLoads:
             least = _CONTACT_SHARE * self._weight
             return [None if force is None else force[2] > least for force in valid.forces]
         if valid.joint_angles is not None and self._joints is not None:
-            found = self._joints.contacts(valid.joint_angles, angles, dt, age=valid.contact_age, down=down, phase=phase)
+            found = self._joints.contacts(valid, angles, state, dt)
             self.estimated = found is not None
         return found
 
     def offsets(
-        self,
-        valid: ValidReadings,
-        angles: Float[np.ndarray, "legs 3"],
-        dt: float,
-        *,
-        feet: Complex[np.ndarray, "legs"],
-        stands: Sequence[bool],
+        self, valid: ValidReadings, angles: Float[np.ndarray, "legs 3"], state: GaitState, dt: float
     ) -> Float[np.ndarray, "legs"] | None:
         """Return the upward offsets of compliant feet by measured forces, or by joint torques [m]; None of stiff ones.
 
@@ -113,12 +98,8 @@ class FootLoads:
             The readings.
         angles : array, shape (legs, 3)
             Joint angles [rad].
-        dt : float
-            Length of the tick [s].
-        feet : complex array, shape (legs,)
-            The feet [m].
-        stands : sequence of bool
-            Which feet stand.
+        state, dt : GaitState, float
+            The gait state; length of the tick [s].
         """
         if self._filter is None:
             return None
@@ -126,11 +107,9 @@ class FootLoads:
         if forces is None and valid.torques is not None and self._torques is not None:
             forces = self._torques.forces(angles.tolist(), valid.torques)
         if forces is None or not self._weight:
-            return np.array(self._filter.step((None,) * len(feet), dt))
-        places = [[foot.real, foot.imag, 0.0] for foot in (feet - feet.mean()).tolist()]
-        expected = balanced_forces(places, list(stands), [0.0, 0.0], self._weight)
-        errors = [
-            force[2] - float(share) if force is not None and down else None
-            for force, share, down in zip(forces, expected, stands, strict=True)
-        ]
+            return np.array(self._filter.step((None,) * len(state.foot), dt))
+        places = [[foot.real, foot.imag, 0.0] for foot in (state.foot - state.foot.mean()).tolist()]
+        stands = state.down.tolist()
+        expected = zip(forces, balanced_forces(places, stands, [0.0, 0.0], self._weight), stands, strict=True)
+        errors = [force[2] - share if force is not None and down else None for force, share, down in expected]
         return np.array(self._filter.step(errors, dt))

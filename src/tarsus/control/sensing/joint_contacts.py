@@ -3,18 +3,18 @@
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from tarsus.control.readings import Vector
+from tarsus.control.readings import ValidReadings
+from tarsus.control.walk.state import GaitState
 from tarsus.kinematics.mass import known_weight
 from tarsus.load.compliant.joint_springs import JointSprings
 from tarsus.robot.robot import Robot
 
 if TYPE_CHECKING:
-    from jaxtyping import Bool, Float
+    from jaxtyping import Float
 
 __all__ = ["JointContacts"]
 
@@ -82,39 +82,28 @@ class JointContacts:
         self._familiar, self._mean = True, [0.0] * robot.legs
 
     def contacts(
-        self,
-        measured: Sequence[Vector | None],
-        commanded: Float[np.ndarray, "legs 3"],
-        dt: float,
-        *,
-        age: float,
-        down: Bool[np.ndarray, "legs"],
-        phase: Float[np.ndarray, "legs"],
+        self, valid: ValidReadings, angles: Float[np.ndarray, "legs 3"], state: GaitState, dt: float
     ) -> list[bool] | None:
         """Return which feet touch the ground; None where nothing is known.
 
         Parameters
         ----------
-        measured : sequence of ((coxa, femur, tibia) or None)
-            Joint angles [rad].
-        commanded : array, shape (legs, 3)
+        valid : ValidReadings
+            The readings, with joint angles.
+        angles : array, shape (legs, 3)
             Joint angles that were commanded in the last tick [rad].
-        dt, age : float
-            Time since the last tick [s]; time since the measurement [s].
-        down : array of bool, shape (legs,)
-            Which feet should stand.
-        phase : array, shape (legs,)
-            Swing phase of the others.
+        state, dt : GaitState, float
+            The gait state; time since the last tick [s].
         """
-        self._follow(commanded[:, 1].tolist(), dt)
-        back, share = divmod((self.lag + age) / dt, 1.0)
-        recent, femurs = int(back) + 1, [leg[1] for leg in measured if leg is not None]
-        if recent >= len(self._expected) or len(femurs) < len(measured):
+        self._follow(angles[:, 1].tolist(), dt)
+        back, share = divmod((self.lag + valid.contact_age) / dt, 1.0)
+        recent, femurs = int(back) + 1, [leg[1] for leg in valid.joint_angles or () if leg is not None]
+        if recent >= len(self._expected) or len(femurs) < len(self._stiffness):
             return None
         (newer, driven), (older, _) = (zip(*self._expected[-index], strict=True) for index in (recent, recent + 1))
         behind = zip(femurs, newer, older, self._stiffness, self._mean, strict=True)
         off = [stiffness * (angle - new - share * (old - new)) - mean for angle, new, old, stiffness, mean in behind]
-        stands, phases = down.tolist(), phase.tolist()
+        stands, phases = state.down.tolist(), state.swing_phase.tolist()
         free = [leg for leg, on in enumerate(stands) if not on and _CLEAR < phases[leg] < _DOWNWARD]
         if free:
             self._learn(free, off, [(newer[leg] - older[leg]) / dt for leg in free])

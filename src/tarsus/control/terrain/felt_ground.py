@@ -126,7 +126,7 @@ class FeltGround:
         valid = self.measured = self._validator.validate(readings, dt)
         down, self._commanded = state.down.tolist(), angles
         stopped = self._swings.step(angles[:, 0].tolist(), valid, dt, down)
-        measured = self._loads.contacts(valid, angles, dt, down=state.down, phase=state.swing_phase)
+        measured = self._loads.contacts(valid, angles, state, dt)
         if not state.felt:
             if measured is None and valid.attitude is None:
                 return state, []
@@ -145,7 +145,7 @@ class FeltGround:
         estimated, age = self._loads.estimated, max(valid.contact_age, self._swings.lag - USUAL_LAG)
         self.contacts.step(measured, down, dt, age=age, count=ticks, leaving=leaving, rests=rests, estimated=estimated)
         self.condition.step([*map(self.contacts.touches, range(len(down)))], valid.attitude, dt, held=self.support.held)
-        self.offsets = self._loads.offsets(valid, angles, dt, feet=state.foot, stands=down)
+        self.offsets = self._loads.offsets(valid, angles, state, dt)
         if self.missing.stranded and all(down):
             state = timing.with_first_lift(state, self.missing.stranded[0])
         pace = self.support.pace
