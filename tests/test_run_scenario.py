@@ -4,6 +4,7 @@ import csv
 import dataclasses
 import math
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -400,17 +401,18 @@ def test_the_log_is_a_table_of_every_tick(tmp_path):
 
 
 def test_an_environment_is_ground_under_each_leg_and_tilt():
-    environment, down = Environment(load_robot("strider")), np.ones(6, dtype=bool)
-    feet = np.zeros((6, 3))
-    assert set(environment.readings(feet, Pose(), down).values()) == {None}
+    environment, feet = Environment(load_robot("strider")), np.zeros((6, 3))
+    output = SimpleNamespace(feet=feet, body=Pose(), contacts=np.ones(6, dtype=bool))
+    assert set(environment.readings(output).values()) == {None}
     environment.set_ground(5, 0.005)
     feet[:, 2] = [0.0, 0.001, 0.0, 0.0, 0.006, 0.004]
-    measured = environment.readings(feet, Pose(), down)
+    measured = environment.readings(output)
     assert measured["contacts"].tolist() == [True, False, True, True, False, True]
     assert measured["attitude"] is None
     assert measured["forces"] is None
     environment.set_tilt(0.1, 0.0)
-    measured = environment.readings(feet, Pose.from_rpy(0.01, -0.02, 1.0, (0.0, 0.0, 0.0)), down)
+    output.body = Pose.from_rpy(0.01, -0.02, 1.0, (0.0, 0.0, 0.0))
+    measured = environment.readings(output)
     assert measured["attitude"] == pytest.approx((0.11, -0.02))
 
 
@@ -419,11 +421,12 @@ def test_forces_are_the_weight_and_what_is_set():
     environment, controller = Environment(robot), WalkController(robot)
     weight = float(total_mass(robot)) * 9.80665
     environment.set_force(5, -2.0)
-    standing = environment.readings(controller.feet, controller.body, controller.contacts)
+    standing = environment.readings(controller)
     assert standing["contacts"] is None
     assert standing["forces"] == pytest.approx([weight / 6] * 5 + [weight / 6 - 2])
     lifted = controller.feet + np.array([False, True] * 3)[:, None] * [0.0, 0.0, 0.01]
-    tripod = environment.readings(lifted, controller.body, np.array([True, False] * 3))
+    output = SimpleNamespace(feet=lifted, body=controller.body, contacts=np.array([True, False] * 3))
+    tripod = environment.readings(output)
     assert tripod["forces"].sum() == pytest.approx(weight)
     assert (tripod["forces"][1::2] == 0).all()
 

@@ -8,9 +8,8 @@ from typing import TYPE_CHECKING, Any, Protocol, runtime_checkable
 import numpy as np
 
 from tarsus.control.control_output import ControlOutput
-from tarsus.control.readings import SensorReadings
+from tarsus.control.readings import RollPitch, SensorReadings
 from tarsus.kinematics.mass import known_weight
-from tarsus.kinematics.pose import Pose
 from tarsus.load.foot_force import balanced_forces
 from tarsus.representation import represented
 from tarsus.robot.robot import Robot, require_robot
@@ -106,42 +105,33 @@ class Environment:
         """
         self._force[leg], self._forces = force, True
 
-    def readings(
-        self, feet: Float[np.ndarray, "legs 3"], body: Pose, contacts: Bool[np.ndarray, "legs"]
-    ) -> dict[str, Any]:
+    def readings(self, output: ControlOutput) -> dict[str, Any]:
         """Return what is measured, by the names of `SensorReadings`.
 
         Parameters
         ----------
-        feet : array, shape (legs, 3)
-            The feet in G [m].
-        body : Pose
-            The body's pose in G, as it would be on flat ground.
-        contacts : array of bool, shape (legs,)
-            Which feet bear load.
+        output : ControlOutput
+            What the controller gave out: feet, body's pose as it would be on flat ground, and which feet bear load.
         """
+        touching = output.feet[:, 2] <= self._height + _TOUCH
         return {
-            "contacts": feet[:, 2] <= self._height + _TOUCH if self._contacts else None,
-            "attitude": self._tilted(feet, body, contacts) if self._attitude else None,
-            "forces": self._loads(feet, contacts) if self._forces else None,
+            "contacts": touching if self._contacts else None,
+            "attitude": self._tilted(output) if self._attitude else None,
+            "forces": self._loads(output.feet, output.contacts | touching) if self._forces else None,
         }
 
-    def _tilted(
-        self, feet: Float[np.ndarray, "legs 3"], body: Pose, contacts: Bool[np.ndarray, "legs"]
-    ) -> tuple[float, float]:
+    def _tilted(self, output: ControlOutput) -> RollPitch:
         """Return roll and pitch: those in G, of the ground, and of its plane against that of the feet [rad]."""
-        roll, pitch = (np.asarray(body.rpy)[:2] + self._tilt).tolist()
-        over = feet[contacts] - feet[contacts].mean(axis=0)
-        slope_x, slope_y = np.linalg.lstsq(over[:, :2], over[:, 2] - self._height[contacts], rcond=None)[0].tolist()
+        roll, pitch = (np.asarray(output.body.rpy)[:2] + self._tilt).tolist()
+        feet, height = output.feet[output.contacts], self._height[output.contacts]
+        over = feet - feet.mean(axis=0)
+        slope_x, slope_y = np.linalg.lstsq(over[:, :2], over[:, 2] - height, rcond=None)[0].tolist()
         return roll - math.atan(slope_y), pitch + math.atan(slope_x)
 
-    def _loads(
-        self, feet: Float[np.ndarray, "legs 3"], contacts: Bool[np.ndarray, "legs"]
-    ) -> Float[np.ndarray, "legs"]:
+    def _loads(self, feet: Float[np.ndarray, "legs 3"], bears: Bool[np.ndarray, "legs"]) -> Float[np.ndarray, "legs"]:
         """Return the ground's vertical forces on the feet ``(legs,)`` [N]."""
         # The walk controller takes the centre of mass to be in the middle of the feet; only so is a share no error.
         centre = feet[:, :2].mean(axis=0)
-        bears = contacts | (feet[:, 2] <= self._height + _TOUCH)
         share = balanced_forces(feet.tolist(), bears.tolist(), centre.tolist(), self._weight)
         return np.where(bears, np.array(share) + self._force, 0.0)
 
@@ -183,7 +173,7 @@ class IdealPlant:
         """
         before = output.angles if self._angles is None else self._angles
         self._angles = output.angles
-        felt = self.environment.readings(output.feet, output.body, output.contacts) if not output.belly else {}
+        felt = {} if output.belly else self.environment.readings(output)
         return SensorReadings(joint_angles=output.angles, joint_speeds=(output.angles - before) / dt, **felt)
 
     def stop(self) -> None:
