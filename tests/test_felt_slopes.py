@@ -99,10 +99,10 @@ def test_feet_come_closer_to_the_height_of_the_middle_of_the_body_on_slopes(name
     rest = feet[:, 0] + 1j * feet[:, 1]
     uphill = np.exp(1j * direction)
     before = (rest * uphill.conjugate()).real
-    stance.step(FootPlane(0.0, 0.09 * uphill.real, 0.09 * uphill.imag), rest)
+    stance.step(FootPlane(0.0, 0.09 * uphill.real, 0.09 * uphill.imag), rest, 0.0, walks=True)
     assert not stance.shift.any()
     assert stance.not_downhill(-0.1 * uphill) == -0.1 * uphill
-    stance.step(FootPlane(0.0, 0.3 * uphill.real, 0.3 * uphill.imag), rest)
+    stance.step(FootPlane(0.0, 0.3 * uphill.real, 0.3 * uphill.imag), rest, 0.0, walks=True)
     after = ((rest + stance.shift) * uphill.conjugate()).real
     assert (np.abs(after) < np.abs(before) + 0.01).all()
     assert np.ptp(after) < (0.8 if direction in (0.0, math.pi) else 0.97) * np.ptp(before)
@@ -115,9 +115,9 @@ def test_feet_come_closer_to_the_height_of_the_middle_of_the_body_on_slopes(name
     assert stance.not_downhill(0.1 * uphill) == 0.1 * uphill
     # A robot that stands does not step for little.
     here = stance.shift
-    stance.step(FootPlane(0.0, 0.28 * uphill.real, 0.28 * uphill.imag), rest, walks=False)
+    stance.step(FootPlane(0.0, 0.28 * uphill.real, 0.28 * uphill.imag), rest, 0.0, walks=False)
     assert stance.shift is here
-    stance.step(FootPlane(), rest, walks=False)
+    stance.step(FootPlane(), rest, 0.0, walks=False)
     assert not stance.shift.any()
 
 

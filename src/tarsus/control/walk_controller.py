@@ -13,6 +13,8 @@ from tarsus.control.limiter.workspace import top_speed
 from tarsus.control.pose.admittance import Admittance
 from tarsus.control.pose.posture_feedback import Levelling
 from tarsus.control.readings import SensorReadings, ValidReadings
+from tarsus.control.sensing.foot_loads import FootLoads
+from tarsus.control.terrain.body_motion import BodyMotion
 from tarsus.control.terrain.felt_ground import FeltGround
 from tarsus.control.terrain.missing_ground import SLOW
 from tarsus.control.terrain.roughness import GroundAdaptation
@@ -125,15 +127,14 @@ class WalkController:
         state = GaitState.standing(stance.rest, transitions.pose.target)
         time_scaling = TimeScaling(solver.angles(state), *limits, self.robot.limits)
         adaptation = GroundAdaptation() if adaptation is None else adaptation
-        ground = FeltGround(
-            self.robot, time_scaling.angles, levelling=levelling, adaptation=adaptation, admittance=admittance
-        )
+        body = BodyMotion(self.robot, levelling=levelling, adaptation=adaptation)
+        loads = FootLoads(self.robot, admittance)
         self._walk = WalkComponents(
             robot=self.robot,
             planner=planner,
             transitions=transitions,
             foot_targets=foot_targets,
-            ground=ground,
+            ground=FeltGround(self.robot, time_scaling.angles, body=body, loads=loads),
             solver=solver,
             time_scaling=time_scaling,
             every_leg=np.ones(self.robot.legs, dtype=bool),

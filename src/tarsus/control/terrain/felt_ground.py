@@ -8,8 +8,6 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from tarsus.control.limitation import Limitation, LimitationKind
-from tarsus.control.pose.admittance import Admittance
-from tarsus.control.pose.posture_feedback import Levelling
 from tarsus.control.readings import SensorReadings, ValidReadings
 from tarsus.control.sensing.body_condition import BodyCondition
 from tarsus.control.sensing.foot_loads import FootLoads
@@ -19,7 +17,6 @@ from tarsus.control.terrain.body_motion import BodyMotion
 from tarsus.control.terrain.foot_contacts import Search, sunk_at
 from tarsus.control.terrain.ground_contact import met_ground, not_sunk, put_down
 from tarsus.control.terrain.missing_ground import SLOW, MissingGround
-from tarsus.control.terrain.roughness import GroundAdaptation
 from tarsus.control.terrain.support import Footing, Support, along_gravity
 from tarsus.control.tick_state import TickState
 from tarsus.control.transition.executor import TransitionExecutor
@@ -58,12 +55,8 @@ class FeltGround:
         A single robot.
     angles : array, shape (legs, 3)
         Joint angles in the initial stance [rad].
-    levelling : "level", "between", "follow" or None
-        The attitude to keep on slopes; None for no use of the measured attitude.
-    adaptation : GroundAdaptation
-        How far the walk may adapt.
-    admittance : Admittance, optional
-        Compliance of the feet; left out, they are stiff.
+    body, loads : BodyMotion, FootLoads
+        How the body moves over its standing feet; how these tell of their loads, and yield to them.
 
     Attributes
     ----------
@@ -80,20 +73,13 @@ class FeltGround:
     """
 
     def __init__(
-        self,
-        robot: Robot,
-        angles: Float[np.ndarray, "legs 3"],
-        *,
-        levelling: Levelling | None,
-        adaptation: GroundAdaptation,
-        admittance: Admittance | None,
+        self, robot: Robot, angles: Float[np.ndarray, "legs 3"], *, body: BodyMotion, loads: FootLoads
     ) -> None:
-        self.body = BodyMotion(robot, levelling=levelling, adaptation=adaptation)
-        self.contacts, self.ground = self.body.contacts, self.body.ground
-        self.missing = MissingGround(robot.leg_names, scale=self.body.reach.scale)
+        self.body, self.contacts, self.ground = body, body.contacts, body.ground
+        self.missing = MissingGround(robot.leg_names, scale=body.reach.scale)
         self.measured, self.support, self.condition = ValidReadings(), Support(), BodyCondition()
         self.offsets: Float[np.ndarray, "legs"] | None = None
-        self._validator, self._loads = ReadingsValidator(robot), FootLoads(robot, admittance)
+        self._validator, self._loads = ReadingsValidator(robot), loads
         self._commanded, self._still, self._swings = angles, True, SwingMonitor()
         self._centre = complex(*centre_of_mass(robot, angles)[:2].tolist())
         # What feet are given while all is as planned; ticks and times since contacts and support were looked at.

@@ -59,9 +59,7 @@ class SlopeStance:
         """Cycle time over that on level ground."""
         return _LONGER if self.uphill else 1.0
 
-    def step(
-        self, level: FootPlane, rest: Complex[np.ndarray, "legs"], drawn_in: float = 0.0, *, walks: bool = True
-    ) -> None:
+    def step(self, level: FootPlane, rest: Complex[np.ndarray, "legs"], drawn_in: float, *, walks: bool) -> None:
         """Follow the slope, and the roughness.
 
         Parameters
