@@ -1,4 +1,4 @@
-"""Contact estimator: which feet bear load, with probabilities, from readings that are wrong now and then."""
+"""Contact estimator: which feet bear load, by probability, from readings that are wrong now and then."""
 
 from __future__ import annotations
 
@@ -48,11 +48,6 @@ class ContactEstimator:
         self._ages = [math.inf] * legs
         self._last: list[tuple[bool, bool]] = [(True, True)] * legs
         self._wrong, self._read = _ERROR * _WEIGHT, _WEIGHT
-
-    @property
-    def probabilities(self) -> list[float]:
-        """Probability that each foot bears load."""
-        return [1 / (1 + math.exp(-odds)) for odds in self._odds]
 
     def step(self, readings: Sequence[bool | None] | None, dt: float, *, count: int = 1) -> None:
         """Take in the contacts of one tick.

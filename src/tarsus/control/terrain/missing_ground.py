@@ -222,10 +222,11 @@ class MissingGround:
 
     def stopped(self, leg: int, foot: complex, goal: complex) -> complex:
         """Decide where a foot tries next that is stopped here on its way to a goal; return the way back [m]."""
-        start, self.places[leg], way, ends = self.obstacles.stopped(leg, foot, goal)
+        start, self.places[leg] = self.obstacles.stopped(leg, foot, goal)
+        ends = not self.obstacles.tries(leg)
         self._cause = self._names[leg], "an obstacle stops the foot" + ends * " that is higher than the leg steps"
         if ends:
-            self._way, self._again = way, max(self._again, _AGAIN - 1)
+            self._way, self._again = self.obstacles.found, max(self._again, _AGAIN - 1)
         return start - foot
 
     def sees(self, holes: Mapping[int, complex], rest: Sequence[complex]) -> None:

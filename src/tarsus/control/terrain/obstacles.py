@@ -4,31 +4,11 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from typing import NamedTuple
 
-__all__ = ["Attempt", "Obstacles"]
+__all__ = ["Obstacles"]
 
 # How often a foot is stopped until it is put down beside its way, on how many sides, how far, or before that [m].
 _STOPS, _SIDES, _BESIDE, _BEFORE = 3, 2, 0.06, 0.04
-
-
-class Attempt(NamedTuple):
-    """Where a foot tries next that is stopped, x + iy in the heading frame [m].
-
-    Attributes
-    ----------
-    start, place : complex
-        Where it is drawn back to; where it goes from there.
-    way : complex
-        The direction in which it was stopped.
-    ends : bool
-        Whether it was stopped too often, and is put down before the obstacle.
-    """
-
-    start: complex
-    place: complex
-    way: complex
-    ends: bool = False
 
 
 class Obstacles:
@@ -63,22 +43,35 @@ class Obstacles:
         """Return whether a way of a foot, in the heading frame, leads away from the obstacle that was found."""
         return (way * self.found.conjugate()).real < 0.0
 
-    def stopped(self, leg: int, foot: complex, goal: complex) -> Attempt:
-        """Decide where a foot tries next that is stopped here on its way to a goal [m]."""
+    def stopped(self, leg: int, foot: complex, goal: complex) -> tuple[complex, complex]:
+        """Decide where a foot tries next that is stopped here on its way to a goal.
+
+        Parameters
+        ----------
+        leg : int
+            The leg.
+        foot, goal : complex
+            Where the foot is, and where it was to go, in the heading frame [m].
+
+        Returns
+        -------
+        start, place : complex
+            Where it is drawn back to; where it goes from there, the same place if it was stopped too often [m].
+        """
         stops, start, goal = self._stops.get(leg, (1, foot, goal))
         self._stops[leg], way = (stops + 1, start, goal), (goal - start) / abs(goal - start)
         start -= self._scale * _BEFORE * way
         self._goals.pop(leg, None)
         if stops >= _STOPS + _SIDES:
             self.found = way
-            return Attempt(start, start, way, ends=True)
+            return start, start
         if stops < _STOPS:
-            return Attempt(start, goal, way)
+            return start, goal
         # Towards the body first: there the leg is steeper.
         inwards = -(start * way.conjugate()).imag * (-1) ** (stops - _STOPS)
         side = 1j * way * math.copysign(self._scale * _BESIDE, inwards)
         self._goals[leg] = goal + side
-        return Attempt(start, start + side, way)
+        return start, start + side
 
     def go_on(self, arrived: Callable[[int], bool]) -> dict[int, complex]:
         """Return where feet go on to that have arrived beside their ways [m]."""
