@@ -4,12 +4,11 @@ from __future__ import annotations
 
 import cmath
 import math
-from collections.abc import Callable, Sequence
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeAlias
 
 import numpy as np
 
-from tarsus.control.pose.vertical_loads import VerticalLoads
+from tarsus.control.pose.vertical_loads import Bears, VerticalLoads
 from tarsus.control.readings import ValidReadings
 from tarsus.load.compliant.joint_springs import JointSprings
 from tarsus.robot.robot import Robot
@@ -19,6 +18,8 @@ if TYPE_CHECKING:
 
 __all__ = ["DeflectionCompensation"]
 
+# How far out and below the foot is from the knee, and from the femur axis [m].
+_Arms: TypeAlias = tuple[float, float, float, float]
 # How fast the softness is learnt [1/s].
 _LEARNING_RATE = 2.0
 # Sum of squares of the femurs' deflections from which on they tell the softness [rad^2].
@@ -63,13 +64,7 @@ class DeflectionCompensation:
             self._legs = list(zip(*(column.tolist() for column in columns), strict=True))
 
     def step(
-        self,
-        valid: ValidReadings,
-        commanded: Float[np.ndarray, "legs 3"],
-        dt: float,
-        *,
-        slope: float,
-        bears: Callable[[], Sequence[bool]] | None = None,
+        self, valid: ValidReadings, angles: Float[np.ndarray, "legs 3"], dt: float, *, slope: float, bears: Bears
     ) -> None:
         """Follow the loads and learn the softness.
 
@@ -77,24 +72,24 @@ class DeflectionCompensation:
         ----------
         valid : ValidReadings
             The readings.
-        commanded : array, shape (legs, 3)
+        angles : array, shape (legs, 3)
             Joint angles that were commanded in the last tick [rad].
         dt : float
             Time since the last tick [s].
         slope : float
             Slope under the feet [m/m].
-        bears : callable, optional
+        bears : callable
             Which feet bear load: they share the robot's weight out where forces are not measured.
         """
         if self.offsets is None:
-            if not (self._loads.are_known(valid, bears) and self._legs):
+            if not (self._loads.are_known(valid) and self._legs):
                 return
-            self._needed = self._needed or self._needed_friction(commanded)
+            self._needed = self._needed or self._needed_friction(angles)
             if self._needed + slope < _FRICTION:
                 return
         wanted = _SHARE if self._needed + slope >= _FRICTION else 0.0
         self._share += min(_LEARNING_RATE * dt, 1.0) * (wanted - self._share)
-        joints, share = commanded.tolist(), self._share * self.softness
+        joints, share = angles.tolist(), self._share * self.softness
         arms = [_lever_arms(*leg[4:6], *turns[1:]) for leg, turns in zip(self._legs, joints, strict=True)]
         loads = self._loads.step(valid, bears, dt, feet=self._feet(joints, arms), joints=joints)
         offsets, lowered, femurs = list[tuple[float, float, float]](), 0.0, list[float]()
@@ -110,12 +105,7 @@ class DeflectionCompensation:
         self.offsets = np.array(offsets)
 
     def _learn(
-        self,
-        valid: ValidReadings,
-        joints: list[list[float]],
-        arms: Sequence[Sequence[float]],
-        turned: Sequence[float],
-        dt: float,
+        self, valid: ValidReadings, joints: list[list[float]], arms: list[_Arms], turned: list[float], dt: float
     ) -> None:
         """Learn the softness: how far the femurs have turned, over how far the servos of the file would be bent."""
         product = square = 0.0
@@ -134,7 +124,7 @@ class DeflectionCompensation:
             learnt = self.softness + min(_LEARNING_RATE * dt, 1.0) * (product / square - self.softness)
             self.softness = min(max(learnt, 0.0), 1.0)
 
-    def _feet(self, joints: list[list[float]], arms: Sequence[Sequence[float]]) -> list[tuple[float, float]]:
+    def _feet(self, joints: list[list[float]], arms: list[_Arms]) -> list[tuple[float, float]]:
         """Return where the feet are in B, x and y [m]."""
         feet: list[tuple[float, float]] = []
         for (x, y, yaw, length, *_), (coxa, *_), (_, _, to_hip, _) in zip(self._legs, joints, arms, strict=True):
@@ -153,7 +143,7 @@ class DeflectionCompensation:
         return needed
 
 
-def _lever_arms(femur: float, tibia: float, turned: float, bent: float) -> tuple[float, float, float, float]:
+def _lever_arms(femur: float, tibia: float, turned: float, bent: float) -> _Arms:
     """Return how far out and below the foot is from the knee, and from the femur axis [m]."""
     knee = cmath.rect(tibia, turned + bent)
     hip = knee + cmath.rect(femur, turned)

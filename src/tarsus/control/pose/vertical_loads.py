@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from typing import TypeAlias
 
 import numpy as np
 
@@ -11,7 +12,10 @@ from tarsus.kinematics.mass import centre_of_mass, known_weight
 from tarsus.load.foot_force import balanced_forces
 from tarsus.robot.robot import Robot
 
-__all__ = ["VerticalLoads"]
+__all__ = ["Bears", "VerticalLoads"]
+
+Bears: TypeAlias = Callable[[], Sequence[bool]]
+"""Which feet bear load: it is asked only where forces do not tell."""
 
 # How fast the loads follow forces and contacts [1/s]: a foot that lands hard must not be pressed down further.
 _RATE = 30.0
@@ -38,15 +42,14 @@ class VerticalLoads:
         self._weight = known_weight(robot)
         self._centre: list[float] | None = None
 
-    def are_known(self, valid: ValidReadings, bears: Callable[[], Sequence[bool]] | None) -> bool:
+    def are_known(self, valid: ValidReadings) -> bool:
         """Return whether loads are known with the joint angles: by measured forces, or by contacts."""
-        by_contacts = bears is not None and self._weight > 0.0
-        return valid.joint_angles is not None and (valid.forces is not None or by_contacts)
+        return valid.joint_angles is not None and (valid.forces is not None or self._weight > 0.0)
 
     def step(
         self,
         valid: ValidReadings,
-        bears: Callable[[], Sequence[bool]] | None,
+        bears: Bears,
         dt: float,
         *,
         feet: Sequence[Sequence[float]],
@@ -58,7 +61,7 @@ class VerticalLoads:
         ----------
         valid : ValidReadings
             The readings; a leg without joint angles, or without force where other legs have one, bears nothing.
-        bears : callable, or None
+        bears : callable
             Which feet bear load: of use where forces are not measured.
         dt : float
             Time since the last tick [s].
@@ -67,12 +70,11 @@ class VerticalLoads:
         joints : sequence of (coxa, femur, tibia)
             Joint angles [rad].
         """
-        nothing = (None,) * len(feet)
         if valid.forces is not None:
             measured = [max(force[2], 0.0) if force else 0.0 for force in valid.forces]
         else:
-            measured = [self._weight / _FEWEST * bool(on) for on in (bears() if bears else nothing)]
-        angles = valid.joint_angles or nothing
+            measured = [self._weight / _FEWEST * on for on in bears()]
+        angles = valid.joint_angles or (None,) * len(feet)
         measured = [load if known else 0.0 for load, known in zip(measured, angles, strict=True)]
         follows = min(_RATE * dt, 1.0)
         self._loads = [load + follows * (new - load) for load, new in zip(self._loads, measured, strict=True)]
