@@ -110,27 +110,22 @@ class TransitionExecutor:
         """Sides of the polygons in which the feet that bear load have to stay: array, shape (legs, 16) [m]."""
         return self._foot_targets.without_bounds(self.footholds.shifted(self.footholds.bounds))
 
-    def stance_intervals(
-        self, state: GaitState, *, frequency: float | None = None
-    ) -> tuple[Float[np.ndarray, "legs"], Float[np.ndarray, "legs"]]:
+    def stance_intervals(self, state: GaitState) -> tuple[Float[np.ndarray, "legs"], Float[np.ndarray, "legs"]]:
         """Return from when until when each foot stands where it is, or where it will touch down.
 
         Parameters
         ----------
         state : GaitState
             The gait state.
-        frequency : float, optional
-            Cycles per second; the present ones where left out [1/s].
 
         Returns
         -------
         begins, ends : array, shape (legs,)
             From now [s].
         """
-        gait = self.timing.gait
         if self._next is None:
-            return stance_intervals(state, gait, frequency or self.timing.frequency)
-        begins = time_to_touchdown(state, gait, self.timing.frequency)
+            return stance_intervals(state, self.timing)
+        begins = time_to_touchdown(state, self.timing)
         return begins, begins.max() + self._next.delays
 
     def is_settled(self, state: GaitState) -> bool:
@@ -207,8 +202,7 @@ class TransitionExecutor:
             bounds = self._foot_targets.without_bounds(self.footholds.bounds_with(planned))
             if leaving:
                 bounds = np.minimum(bounds, planned.final_limits.bounds)
-            bandwidth = self.timing._replace(gait=gait, frequency=frequency).bandwidth
-            if self._stays_within(bounds, now, frequency=frequency, bandwidth=bandwidth):
+            if self._stays_within(bounds, now, self.timing._replace(frequency=frequency)):
                 self._begin(planned, state)
         return state
 
@@ -216,7 +210,7 @@ class TransitionExecutor:
         """Let all feet touch down, if they may stand for so long; the leg that suits best then lifts first."""
         cycle_time, gait = planned.cycle_timing.cycle_time, planned.parameters.gait
         timing, delays = StepTiming.of(gait, cycle_time), lift_delays(gait, cycle_time)
-        ends = time_to_touchdown(now.gait, self.timing.gait, self.timing.frequency).max() + delays
+        ends = time_to_touchdown(now.gait, self.timing).max() + delays
         bounds = self._foot_targets.without_bounds(self.footholds.bounds_with(planned))
         bounds = self.footholds.shifted(np.minimum(bounds, planned.final_limits.bounds))
         begins, bandwidth = np.zeros(delays.shape), timing.bandwidth
@@ -230,22 +224,19 @@ class TransitionExecutor:
 
     def _try_to_move_body(self, active: StanceTransition, now: TickState) -> None:
         """Move the body once every foot is at its new rest foothold."""
-        excluded, frequency = self.current.parameters.excluded, self.timing.frequency
+        excluded = self.current.parameters.excluded
         stepped = all(done or leg in excluded for leg, done in enumerate(self.footholds.transferred.tolist()))
-        if not stepped or frequency > 1 / active.cycle_timing.cycle_time:
+        if not stepped or self.timing.frequency > 1 / active.cycle_timing.cycle_time:
             return
         bounds = self._foot_targets.without_bounds(active.path_limits.bounds)
-        if self._stays_within(bounds, now, frequency=frequency, bandwidth=self.bandwidth):
+        if self._stays_within(bounds, now, self.timing):
             self.footholds.restrict(active.path_limits)
             self.pose.set_posture(active.posture)
             self._active = None
 
-    def _stays_within(
-        self, bounds: Float[np.ndarray, "legs 16"], now: TickState, *, frequency: float, bandwidth: float
-    ) -> bool:
-        begins, ends = self.stance_intervals(now.gait, frequency=frequency)
-        bounds = self.footholds.shifted(bounds)
-        excess = FootPrediction.of(now.gait, begins, ends, bandwidth).excess(now.twist[None], bounds)
+    def _stays_within(self, bounds: Float[np.ndarray, "legs 16"], now: TickState, timing: StepTiming) -> bool:
+        prediction = FootPrediction.of(now.gait, *stance_intervals(now.gait, timing), timing.bandwidth)
+        excess = prediction.excess(now.twist[None], self.footholds.shifted(bounds))
         return bool(excess.max() <= stance_tolerance(now.gait))
 
     def _begin(self, planned: StanceTransition, state: GaitState) -> None:

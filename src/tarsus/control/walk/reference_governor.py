@@ -14,6 +14,7 @@ import numpy as np
 
 from tarsus.control.filters import integral_factors
 from tarsus.control.walk.state import GaitState
+from tarsus.control.walk.step_timing import StepTiming
 from tarsus.gait.foot_polygons import NORMALS
 from tarsus.gait.gait import Gait
 from tarsus.gait.stance.velocity_limits import stance_overhang
@@ -169,17 +170,16 @@ def _last_feasible(excess: Float[np.ndarray, "n 3 legs 16"]) -> int | None:
 
 
 def stance_intervals(
-    state: GaitState, gait: Gait, frequency: float
+    state: GaitState, timing: StepTiming
 ) -> tuple[Float[np.ndarray, "legs"], Float[np.ndarray, "legs"]]:
     """Return from when until when each foot stands where it is, or where it will be put down: shape (legs,) each [s].
 
     Parameters
     ----------
-    state, gait : GaitState, Gait
-        The gait state; order of the steps.
-    frequency : float
-        Cycles per second [1/s].
+    state, timing : GaitState, StepTiming
+        The gait state; the gait and its frequency.
     """
+    gait, frequency, _ = timing
     duty_factor = gait.duty_factor
     over = (stance_overhang(duty_factor) - 0.5) * duty_factor / frequency
     touchdown = np.asarray(gait.offsets) + state.step_number - state.clock
@@ -187,20 +187,20 @@ def stance_intervals(
     # already is past its lift-off: on ground that is felt, feet often wait for a tick or two until others have landed,
     # which is taken from the time in which they fall behind after lift-off.
     waits, least = (touchdown.clip(0.0) / frequency, 0.0) if state.felt else (0.0, over)
-    begins = np.where(state.down, waits, time_to_touchdown(state, gait, frequency))
+    begins = np.where(state.down, waits, time_to_touchdown(state, timing))
     lift_off = np.maximum((touchdown + duty_factor) / frequency + over, least)
     return begins, np.where(state.down, lift_off, begins + duty_factor / frequency + over)
 
 
-def time_to_touchdown(state: GaitState, gait: Gait, frequency: float) -> Float[np.ndarray, "legs"]:
+def time_to_touchdown(state: GaitState, timing: StepTiming) -> Float[np.ndarray, "legs"]:
     """Return the time until each foot touches down: array, shape (legs,) [s].
 
     Parameters
     ----------
-    state, gait, frequency
+    state, timing
         As for `stance_intervals`.
     """
-    return np.where(state.down, 0.0, (1 - state.swing_phase) * (1 - gait.duty_factor) / frequency)
+    return np.where(state.down, 0.0, (1 - state.swing_phase) * (1 - timing.gait.duty_factor) / timing.frequency)
 
 
 def lift_delays(gait: Gait, cycle_time: float) -> Float[np.ndarray, "legs legs"]:
