@@ -21,11 +21,11 @@ from tarsus.control.states.persistent_command import PersistentCommand, stopped
 from tarsus.control.states.reduced_walking import LegFailures
 from tarsus.control.states.robot_state import RobotState, next_state, requested_state
 from tarsus.control.terrain.roughness import GroundAdaptation
-from tarsus.control.walk.ground_pose import ground_frame
 from tarsus.control.walk_controller import WalkController
 from tarsus.errors import InputError, TarsusError
 from tarsus.gait.gait import Gait
 from tarsus.gait.walk_setup import require_number
+from tarsus.kinematics.ground import ground_frame
 from tarsus.kinematics.leg import forward_kinematics
 from tarsus.kinematics.pose import Pose
 from tarsus.representation import represented

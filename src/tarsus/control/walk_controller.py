@@ -28,7 +28,6 @@ from tarsus.control.tick_state import TickState
 from tarsus.control.transition.executor import TransitionExecutor
 from tarsus.control.transition.planner import TransitionPlanner
 from tarsus.control.walk.foot_targets import FootTargets
-from tarsus.control.walk.ground_pose import body_pose
 from tarsus.control.walk.joint_solver import JointSolver
 from tarsus.control.walk.state import GaitState
 from tarsus.control.walk.time_scaling import TimeScaling
@@ -218,7 +217,7 @@ class WalkController:
     @property
     def body(self) -> Pose:
         """Pose of B in G."""
-        return body_pose(self._tick.gait)
+        return self._tick.gait.body
 
     @property
     def feet(self) -> Float[np.ndarray, "legs 3"]:

@@ -1,4 +1,4 @@
-"""Legs below the ground for a pose of the body."""
+"""The ground below a pose of the body: the frame on it, and legs below it."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from tarsus.robot.geometry import LegGeometry
 if TYPE_CHECKING:
     from jaxtyping import Float, Int
 
-__all__ = ["PoseComponents", "certainly_above_ground", "mark_below_ground", "points_in_body"]
+__all__ = ["PoseComponents", "certainly_above_ground", "ground_frame", "mark_below_ground", "points_in_body"]
 
 
 class PoseComponents(NamedTuple):
@@ -62,6 +62,18 @@ class PoseComponents(NamedTuple):
         """Return the height above the ground of points in B."""
         zx, zy, zz = self.rotation[2]
         return zx * x + zy * y + zz * z + self.position[2]
+
+
+def ground_frame(body: Pose) -> Pose:
+    """Return the frame on the ground below a body that has the body's heading.
+
+    Parameters
+    ----------
+    body : Pose
+        A single pose of B in G.
+    """
+    yaw = float(np.asarray(body.rpy)[2])
+    return Pose.from_rpy(0.0, 0.0, yaw, (float(body.position[0]), float(body.position[1]), 0.0))
 
 
 def points_in_body(body: Pose, points: Float[Array, "*#batch 3"]) -> Float[Array, "... k 3"]:

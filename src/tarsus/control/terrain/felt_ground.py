@@ -22,7 +22,6 @@ from tarsus.control.tick_state import TickState
 from tarsus.control.transition.executor import TransitionExecutor
 from tarsus.control.transition.foothold_transfer import FootholdTransfer
 from tarsus.control.walk.felt_feet import FeltFoot, FeltInputs, GroundUnder, travel_share
-from tarsus.control.walk.ground_pose import body_posture
 from tarsus.control.walk.state import GaitState
 from tarsus.control.walk.step_timing import NextLift, StepTiming
 from tarsus.gait.foot_plane import FootPlane
@@ -164,7 +163,7 @@ class FeltGround:
         footing = Footing(
             [(foot - state.origin) * turn for foot in state.foot.tolist()],
             [on and step for on, step in zip(state.down.tolist(), steps, strict=True)],
-            along_gravity(self._centre, body_posture(state)[:3].tolist(), self.body.tilt or (0.0, 0.0)),
+            along_gravity(self._centre, state.moved_posture[:3].tolist(), self.body.tilt or (0.0, 0.0)),
             float(state.posture.value[2]),
         )
         if self.body.looks:

@@ -15,7 +15,6 @@ from tarsus.control.transition.feasible_fraction import StanceTarget
 from tarsus.control.transition.stance_transition import StanceTransition, WalkParameters
 from tarsus.control.transition.target_stance import sway_extremes
 from tarsus.control.walk.foot_target_motion import reachable_fraction
-from tarsus.control.walk.ground_pose import body_pose
 from tarsus.control.walk.state import GaitState
 from tarsus.gait.stance.stability import support_sets
 from tarsus.gait.stance.stance_geometry import SWING_HEIGHT
@@ -59,7 +58,7 @@ def _plan_transition(
     if excluded:
         yield
         sets = support_sets(parameters.gait, excluded)
-        margin = float(stability_margin(walk.robot, walk.time_scaling.angles, body_pose(state), sets).min())
+        margin = float(stability_margin(walk.robot, walk.time_scaling.angles, state.body, sets).min())
         if margin < _LEAST_MARGIN:
             reason = f"not enough support in the {parameters.gait.name} gait without this leg"
             names = " and ".join(walk.robot.leg_names[leg] for leg in excluded)

@@ -10,7 +10,6 @@ import numpy as np
 from tarsus.control.filters import CriticallyDamped
 from tarsus.control.pose.deflection_compensation import DeflectionCompensation
 from tarsus.control.pose.foot_rolling import FootRolling
-from tarsus.control.walk.ground_pose import body_posture
 from tarsus.control.walk.state import GaitState
 from tarsus.control.workspace.body_shift import NO_SHIFT
 from tarsus.gait.stance.stance_geometry import SWING_HEIGHT, Rows, rotation_rows
@@ -108,7 +107,7 @@ class JointSolver:
 
     def _body_at(self, state: GaitState) -> tuple[Rows, list[float], float]:
         if state.posture is not self._posture or state.shift is not NO_SHIFT:
-            x, y, z, roll, pitch, yaw, swing_height = body_posture(state).tolist()
+            x, y, z, roll, pitch, yaw, swing_height = state.moved_posture.tolist()
             self._body = rotation_rows(roll, pitch, yaw), [x, y, z], swing_height
             sways = any(state.posture.value[SWING_HEIGHT + 1 :].tolist())
             self._posture = None if sways else state.posture

@@ -15,8 +15,11 @@ import numpy as np
 from tarsus.control.filters import CriticallyDamped
 from tarsus.control.walk.felt_feet import FeltFoot, FeltInputs
 from tarsus.control.workspace.body_shift import NO_SHIFT
+from tarsus.gait.body_shift import shift_at
 from tarsus.gait.gait import Gait
+from tarsus.gait.stance.stance_geometry import rotation_rows, with_sway
 from tarsus.gait.swing_trajectory import swinging_height
+from tarsus.kinematics.pose import Pose
 
 if TYPE_CHECKING:
     from jaxtyping import Bool, Complex, Float
@@ -126,6 +129,23 @@ class GaitState(NamedTuple):
             rhythm=CriticallyDamped.still(np.zeros(2)),
             admittance_offset=CriticallyDamped.still(none),
         )
+
+    @property
+    def moved_posture(self) -> Float[np.ndarray, "7"]:
+        """The posture with the displacements by sway and body shift."""
+        posture = with_sway(self.posture.value, self.cycles, self.beats)
+        if self.shift is NO_SHIFT:
+            return posture
+        shift = complex(shift_at(self.shift.value.view(complex), self.clock))
+        return np.asarray(posture + np.array([shift.real, shift.imag, 0.0, 0.0, 0.0, 0.0, 0.0]))
+
+    @property
+    def body(self) -> Pose:
+        """Pose of B in G."""
+        x, y, z, roll, pitch, yaw, _ = self.moved_posture.tolist()
+        origin = self.origin + cmath.exp(1j * self.yaw) * complex(x, y)
+        rotation = np.array(rotation_rows(roll, pitch, self.yaw + yaw))
+        return Pose.unchecked(rotation, np.array([origin.real, origin.imag, self.elevation + z]))
 
     def heights(self, swing_height: float) -> list[float]:
         """Return the heights of the feet in G as a list of floats [m].
