@@ -22,7 +22,6 @@ def step_inputs_of(setup, rest, twist, **changes):
         "posture": posture_of(setup),
         "bandwidth": 4 / setup.gait.duty_factor,
         "posture_bandwidth": 4.0,
-        "may_lift": np.ones(len(rest), dtype=bool),
         "hold_feet": False,
         "rest": rest,
         "placement_bounds": np.full((len(rest), 16), np.inf),

@@ -136,8 +136,6 @@ class WalkController:
             ground=FeltGround(self.robot, time_scaling.angles, body=body, loads=loads),
             solver=solver,
             time_scaling=time_scaling,
-            every_leg=np.ones(self.robot.legs, dtype=bool),
-            no_offset=np.zeros(self.robot.legs),
         )
         self._tick = TickState(state, np.zeros(3))
         self._intake = CommandIntake(self.robot, transitions)

@@ -3,9 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
-
-import numpy as np
 
 from tarsus.control.terrain.felt_ground import FeltGround
 from tarsus.control.transition.executor import TransitionExecutor
@@ -14,9 +11,6 @@ from tarsus.control.walk.foot_targets import FootTargets
 from tarsus.control.walk.joint_solver import JointSolver
 from tarsus.control.walk.time_scaling import TimeScaling
 from tarsus.robot.robot import Robot
-
-if TYPE_CHECKING:
-    from jaxtyping import Bool, Float
 
 __all__ = ["WalkComponents"]
 
@@ -41,10 +35,6 @@ class WalkComponents:
         Solves gait states for joint angles.
     time_scaling : TimeScaling
         The joint angles, and the rate of the walk's time.
-    every_leg : array of bool, shape (legs,)
-        True for each leg.
-    no_offset : array, shape (legs,)
-        Zero for each leg [m].
     """
 
     robot: Robot
@@ -54,5 +44,3 @@ class WalkComponents:
     ground: FeltGround
     solver: JointSolver
     time_scaling: TimeScaling
-    every_leg: Bool[np.ndarray, "legs"]
-    no_offset: Float[np.ndarray, "legs"]

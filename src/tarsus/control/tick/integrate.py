@@ -45,15 +45,11 @@ def _step_inputs(walk: WalkComponents, tick: TickState, dt: float) -> StepInputs
     """Return what the stepper is given for a tick."""
     state, standing = tick.gait, tick.standing
     transitions = walk.transitions
-    timing, pose, current = transitions.timing, transitions.pose, transitions.current
+    timing, pose, parameters = transitions.timing, transitions.pose, transitions.current.parameters
     footholds, excluded = transitions.footholds, walk.foot_targets.legs
-    sway = _NO_MOTION if standing or timing.gait.body_shift else current.parameters.sway
+    sway = _NO_MOTION if standing or timing.gait.body_shift else parameters.sway
     pose.set_sway(sway, frequency=timing.frequency, beats=timing.beats)
-    may_lift, hold_feet = walk.every_leg, transitions.changes_gait
-    if walk.foot_targets:
-        may_lift = may_lift.copy()
-        may_lift[list(current.parameters.excluded)] = False
-    felt, offsets = None, walk.no_offset
+    hold_feet, felt, offsets = transitions.changes_gait, None, state.admittance_offset.value
     if state.felt:
         footholds.shift(walk.ground.body.stance.shift)
         felt = walk.ground.inputs(tick, transitions, excluded, dt)
@@ -68,12 +64,12 @@ def _step_inputs(walk: WalkComponents, tick: TickState, dt: float) -> StepInputs
         posture=pose.target,
         bandwidth=transitions.bandwidth,
         posture_bandwidth=pose.bandwidth(state.posture.value),
-        may_lift=may_lift,
         rest=footholds.rest,
         placement_bounds=footholds.placement_bounds,
         placement_radii=footholds.placement_radii,
         admittance_offset=offsets,
         hold_feet=hold_feet,
+        excluded=parameters.excluded if walk.foot_targets else (),
         beats=timing.beats,
         swaying=pose.is_swaying(state.posture.value),
         shift=pose.shift,

@@ -178,8 +178,6 @@ class StepInputs(NamedTuple):
         Targets of the twist and of the posture.
     bandwidth, posture_bandwidth : float
         Bandwidths of their filters [rad/s].
-    may_lift : array of bool, shape (legs,)
-        Which feet may lift off.
     rest : complex array, shape (legs,)
         Rest footholds in the heading frame [m].
     placement_bounds : array, shape (legs, 16)
@@ -190,6 +188,8 @@ class StepInputs(NamedTuple):
         Target of each foot's admittance offset [m].
     hold_feet : bool
         Whether no foot lifts off.
+    excluded : tuple of int
+        Legs whose feet may not lift off.
     beats : int
         How many times per cycle feet lift off.
     swaying : bool
@@ -206,12 +206,12 @@ class StepInputs(NamedTuple):
     posture: Float[np.ndarray, "_"]
     bandwidth: float
     posture_bandwidth: float
-    may_lift: Bool[np.ndarray, "legs"]
     rest: Complex[np.ndarray, "legs"]
     placement_bounds: Float[np.ndarray, "legs 16"]
     placement_radii: list[float]
     admittance_offset: Float[np.ndarray, "legs"]
     hold_feet: bool = False
+    excluded: tuple[int, ...] = ()
     beats: int = 2
     swaying: bool = True
     felt: FeltInputs | None = None

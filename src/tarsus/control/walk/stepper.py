@@ -93,7 +93,8 @@ def _lift(
 
     `late` is the time since each was due at the start of the tick [cycles], `final` where feet stop, if they do.
     """
-    lifts = due & inputs.may_lift
+    lifts = due.copy()
+    lifts[list(inputs.excluded)] = False
     if final is not None:
         away = np.abs(state.foot - final) > stance_tolerance(state)
         # A leg that returns to the gait is over its foothold at best.
