@@ -121,7 +121,7 @@ class WalkController:
         self.joint_speed, self.joint_acceleration = limits
         planner = TransitionPlanner(self.robot, limits, foot_distance=setup.foot_distance)
         stance = planner.initial_stance(setup, stance_width=stance_width, cycle_time=cycle_time)
-        foot_targets, solver = FootTargets(self.robot.leg_names), JointSolver(self.robot)
+        foot_targets, solver = FootTargets(self.robot), JointSolver(self.robot)
         transitions = TransitionExecutor(stance, foot_targets)
         state = GaitState.standing(stance.rest, transitions.pose.target)
         time_scaling = TimeScaling(solver.angles(state), *limits, self.robot.limits)

@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from functools import partial
 
-import numpy as np
-
 from tarsus.control.command import Command
 from tarsus.control.incremental import Incremental
 from tarsus.control.limitation import Cause
@@ -13,11 +11,8 @@ from tarsus.control.tick.components import WalkComponents
 from tarsus.control.tick_state import TickState
 from tarsus.control.transition.feasible_fraction import StanceTarget
 from tarsus.control.transition.stance_transition import StanceTransition, WalkParameters
-from tarsus.control.transition.target_stance import sway_extremes
-from tarsus.control.walk.foot_target_motion import reachable_fraction
 from tarsus.control.walk.state import GaitState
 from tarsus.gait.stance.stability import support_sets
-from tarsus.gait.stance.stance_geometry import SWING_HEIGHT
 from tarsus.kinematics.stability import stability_margin
 
 __all__ = ["planned"]
@@ -39,14 +34,7 @@ def planned(walk: WalkComponents, tick: TickState, command: Command, dt: float) 
         Length of the tick [s].
     """
     state = walk.transitions.advance(partial(_plan_transition, walk, tick.gait), tick)
-
-    # Feet go no farther than they reach wherever the body sways.
-    def reachable(leg: int, start: np.ndarray, end: np.ndarray) -> float:
-        sway = walk.transitions.current.parameters.sway
-        postures = sway_extremes(state.posture.value[: SWING_HEIGHT + 1], sway)
-        return reachable_fraction(walk.robot, postures, leg, start, end)
-
-    walk.foot_targets.set_targets(command, dt, reachable)
+    walk.foot_targets.set_targets(command, state.posture.value, walk.transitions.current.parameters.sway, dt)
     return tick if state is tick.gait else tick._replace(gait=state)
 
 

@@ -19,11 +19,12 @@ from tarsus.control.transition.feasible_fraction import (
 )
 from tarsus.control.transition.shortfalls import UNREACHABLE, stance_limitations
 from tarsus.control.transition.stance_transition import StanceTransition, WalkParameters
-from tarsus.control.transition.target_stance import sway_extremes, target_stance
+from tarsus.control.transition.target_stance import target_stance
 from tarsus.control.workspace.cycle_time import CycleTiming, cycle_timing
 from tarsus.control.workspace.stance_limits import shifted_limits, velocity_limits
 from tarsus.errors import InputError, UnreachableError
 from tarsus.gait.stance.stability import StabilityCheck, support_sets
+from tarsus.gait.stance.stance_geometry import sway_extremes
 from tarsus.gait.stance.velocity_limits import VelocityLimits, with_stroke_limits
 from tarsus.gait.walk_setup import WalkSetup, require_float, require_number
 from tarsus.robot.joint_limits import JointLimits
@@ -157,7 +158,7 @@ class TransitionPlanner:
         )
         final = with_stroke_limits(limits, timing.stroke, timing.turning, duty_factor=parameters.gait.duty_factor)
         yield
-        stepping, on_path = yield from self._path_limits(parameters, path.start, goal, final, timing)
+        stepping, on_path = yield from self._path_limits(parameters, path.start, goal, final)
         if not on_path.feasible:
             return self._path_cause(on_path)
         shortfalls = () if end is present else self._shortfalls(parameters, path)
@@ -184,12 +185,7 @@ class TransitionPlanner:
         return velocity_limits(self._robot, stands, sets, foot_distance=distance, excluded=excluded)
 
     def _path_limits(
-        self,
-        parameters: WalkParameters,
-        start: StanceTarget,
-        goal: StanceTarget,
-        final: VelocityLimits,
-        timing: CycleTiming,
+        self, parameters: WalkParameters, start: StanceTarget, goal: StanceTarget, final: VelocityLimits
     ) -> Incremental[tuple[VelocityLimits, VelocityLimits]]:
         """Find the limits while the feet step, and while the body moves to its goal."""
         if np.abs(goal.posture - start.posture).max() <= _SAME:
@@ -197,7 +193,7 @@ class TransitionPlanner:
         halfway, begin = (goal._replace(posture=start.towards(goal, part).posture) for part in (0.5, 0.0))
         on_path = final.intersection((yield from self._limits(parameters, halfway)))
         stepping = yield from self._limits(parameters, begin)
-        stepping = with_stroke_limits(stepping, timing.stroke, timing.turning, duty_factor=parameters.gait.duty_factor)
+        stepping = with_stroke_limits(stepping, final.stroke, final.turning, duty_factor=parameters.gait.duty_factor)
         return stepping, on_path.intersection(stepping)
 
     def _cause(self, parameters: WalkParameters, stance: StanceTarget, limits: VelocityLimits) -> Cause:

@@ -16,9 +16,8 @@ from tarsus.robot.robot import Robot
 if TYPE_CHECKING:
     from jaxtyping import Float
 
-__all__ = ["sway_extremes", "target_stance"]
+__all__ = ["target_stance"]
 
-_AXES_WITH_BEATS = np.array([1, 0, 1, 0, 1, 0])
 # Fractions of a change of height that are tried where the whole of it has no foothold.
 _FRACTIONS = np.arange(7, 0, -1) / 8
 
@@ -64,20 +63,3 @@ def _footholds(
             first = int(works.argmax())
             return float(body_heights[first]), float(swing_heights[first]), feet[first]
     raise UnreachableError(f"no leg reaches the ground at body height {parameters.body_height * 1000:.1f} mm")
-
-
-def sway_extremes(posture: Float[np.ndarray, "7"], sway: tuple[float, ...]) -> list[Float[np.ndarray, "7"]]:
-    """Return the postures at the extremes of a sway, and the one in the middle last.
-
-    Parameters
-    ----------
-    posture : array, shape (7,)
-        The posture in the middle.
-    sway : tuple of float
-        Amplitudes: x, y, z [m], roll, pitch, yaw [rad].
-    """
-    if not any(sway):
-        return [posture]
-    # Half of the axes sway with the beats, half with the cycles: their extremes meet in any combination.
-    beats, cycles = (np.append(np.array(sway) * axes, 0.0) for axes in (_AXES_WITH_BEATS, 1 - _AXES_WITH_BEATS))
-    return [*(posture + a * beats + b * cycles for a in (1, -1) for b in (1, -1)), posture]

@@ -17,7 +17,7 @@ from tarsus.robot.robot import Robot
 if TYPE_CHECKING:
     from jaxtyping import Bool, Complex, Float
 
-__all__ = ["FootTargetMotion", "apply_foot_targets", "begin_foot_target", "best_body_shift", "reachable_fraction"]
+__all__ = ["FootTargetMotion", "begin_foot_target", "best_body_shift", "reachable_fraction"]
 
 
 # Greatest bandwidth [rad/s] and speed [m/s] with which a foot follows its target.
@@ -78,31 +78,6 @@ def begin_foot_target(state: GaitState, leg: int) -> FootTargetMotion:
     relative = -(complex(vx, vy) + 1j * wz * in_heading)
     here = np.array([in_heading.real, in_heading.imag, float(state.ground_height[leg]) - state.elevation])
     return FootTargetMotion(CriticallyDamped(here, np.array([relative.real, relative.imag, -state.climb])), here)
-
-
-def apply_foot_targets(state: GaitState, motions: dict[int, FootTargetMotion], swing_time: float) -> GaitState:
-    """Return the state with the feet at the positions of their motions, except those that are in a swing again.
-
-    Parameters
-    ----------
-    state, motions : GaitState, dict of int to FootTargetMotion
-        The state of the walk; the motions by leg.
-    swing_time : float
-        Duration of a swing [s].
-    """
-    foot, ground, pace = state.foot.copy(), state.ground_height.copy(), state.swing_velocity.copy()
-    turn = cmath.exp(1j * state.yaw)
-    vx, vy, wz = state.twist.value.tolist()
-    for leg, motion in motions.items():
-        if not state.down[leg]:
-            continue
-        x, y, z = motion.position.value.tolist()
-        dx, dy, _ = motion.position.rate.tolist()
-        in_heading = complex(x, y)
-        foot[leg], ground[leg] = state.origin + turn * in_heading, z + state.elevation
-        pace[leg] = turn * (complex(dx, dy) + complex(vx, vy) + 1j * wz * in_heading) * swing_time
-    target = np.where(state.down, foot, state.foothold)
-    return state._replace(foot=foot, foothold=target, ground_height=ground, swing_velocity=pace)
 
 
 def best_body_shift(rest: Complex[np.ndarray, "legs"], centre: complex, sets: Bool[np.ndarray, "n legs"]) -> complex:

@@ -2,16 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+import cmath
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from tarsus.control.command import Command
 from tarsus.control.limitation import Cause, Limitation, LimitationKind
-from tarsus.control.walk.foot_target_motion import FootTargetMotion, apply_foot_targets, begin_foot_target
+from tarsus.control.walk.foot_target_motion import FootTargetMotion, begin_foot_target, reachable_fraction
 from tarsus.control.walk.state import GaitState
 from tarsus.errors import InputError
+from tarsus.gait.stance.stance_geometry import SWING_HEIGHT, sway_extremes
+from tarsus.robot.robot import Robot
 
 if TYPE_CHECKING:
     from jaxtyping import Bool, Float
@@ -53,12 +56,12 @@ class FootTargets:
 
     Parameters
     ----------
-    names : sequence of str
-        Names of the legs in limitations.
+    robot : Robot
+        A single robot.
     """
 
-    def __init__(self, names: Sequence[str]) -> None:
-        self._names = names
+    def __init__(self, robot: Robot) -> None:
+        self._robot = robot
         self._motions: dict[int, FootTargetMotion] = {}
         self._excluded: tuple[int, ...] = ()
         self._points: dict[int, Sequence[float]] = {}
@@ -81,10 +84,11 @@ class FootTargets:
     @property
     def limitations(self) -> list[Limitation]:
         """Foot targets that are out of reach or below the ground."""
-        kind, far = LimitationKind.FOOT_TARGET, [item for item in self._fractions.items() if item[1] < 1]
+        kind, names = LimitationKind.FOOT_TARGET, self._robot.leg_names
+        far = [item for item in self._fractions.items() if item[1] < 1]
         return [
-            *(Cause("out of reach", self._names[leg]).limitation(kind, asked=1.0, granted=share) for leg, share in far),
-            *(Limitation(kind=kind, cause=_BELOW_GROUND, leg=self._names[leg]) for leg in self._below_ground),
+            *(Cause("out of reach", names[leg]).limitation(kind, asked=1.0, granted=share) for leg, share in far),
+            *(Limitation(kind=kind, cause=_BELOW_GROUND, leg=names[leg]) for leg in self._below_ground),
         ]
 
     def set_legs(self, excluded: tuple[int, ...], state: GaitState) -> None:
@@ -102,7 +106,7 @@ class FootTargets:
         self._excluded, self._fractions, self._below_ground = excluded, {}, []
 
     def set_targets(
-        self, command: Command, dt: float, reachable: Callable[[int, np.ndarray, np.ndarray], float]
+        self, command: Command, posture: Float[np.ndarray, "13"], sway: tuple[float, ...], dt: float
     ) -> None:
         """Set the targets of the feet, as far towards the commanded points as their legs reach.
 
@@ -110,10 +114,10 @@ class FootTargets:
         ----------
         command : Command
             A point in it holds until the next one; a velocity for this tick.
+        posture, sway : array, shape (13,), tuple of float
+            Posture of the body; amplitudes of its sway: feet go no farther than they reach wherever it sways.
         dt : float
             Length of the tick [s].
-        reachable : callable
-            Fraction of the path between two points that a leg's foot can follow, from leg, start and end.
         """
         if not (self._points or command.foot_targets or command.foot_velocities):
             return
@@ -121,6 +125,7 @@ class FootTargets:
         points = {**self._points, **(command.foot_targets or {})}
         self._points = {leg: point for leg, point in points.items() if point is not None and leg not in velocities}
         self._below_ground = []
+        postures = sway_extremes(posture[: SWING_HEIGHT + 1], sway)
         for leg in self._excluded:
             motion = self._motions[leg]
             start = motion.position.value
@@ -133,11 +138,11 @@ class FootTargets:
             else:
                 continue
             end[2] = max(end[2], 0.0)
-            fraction = self._fractions[leg] = reachable(leg, start, end)
+            fraction = self._fractions[leg] = reachable_fraction(self._robot, postures, leg, start, end)
             self._motions[leg] = motion._replace(target=start + fraction * (end - start))
 
     def apply(self, state: GaitState, time: float, *, swing_time: float) -> GaitState:
-        """Return the state with the feet taken out of the gait moved by a time.
+        """Return the state with the feet taken out of the gait moved by a time, except those that are in a swing again.
 
         Parameters
         ----------
@@ -148,7 +153,20 @@ class FootTargets:
         """
         if not self._motions:
             return state
-        return apply_foot_targets(state, {leg: motion.step(time) for leg, motion in self._motions.items()}, swing_time)
+        foot, ground, pace = state.foot.copy(), state.ground_height.copy(), state.swing_velocity.copy()
+        turn = cmath.exp(1j * state.yaw)
+        vx, vy, wz = state.twist.value.tolist()
+        for leg, motion in self._motions.items():
+            if not state.down[leg]:
+                continue
+            position = motion.step(time).position
+            x, y, z = position.value.tolist()
+            dx, dy, _ = position.rate.tolist()
+            in_heading = complex(x, y)
+            foot[leg], ground[leg] = state.origin + turn * in_heading, z + state.elevation
+            pace[leg] = turn * (complex(dx, dy) + complex(vx, vy) + 1j * wz * in_heading) * swing_time
+        target = np.where(state.down, foot, state.foothold)
+        return state._replace(foot=foot, foothold=target, ground_height=ground, swing_velocity=pace)
 
     def step(self, time: float, down: Bool[np.ndarray, "legs"]) -> None:
         """Advance the motions by a time; a leg that steps again is removed.

@@ -25,6 +25,7 @@ __all__ = [
     "joint_margin",
     "rotation_rows",
     "stance_geometry_of",
+    "sway_extremes",
     "sway_fraction",
     "with_sway",
 ]
@@ -118,6 +119,9 @@ Rows: TypeAlias = tuple[tuple[float, ...], ...]
 SWING_HEIGHT = 6
 """Index of the swing height in a posture."""
 
+# Axes that sway with the beats; the others sway with the cycles.
+_AXES_WITH_BEATS = np.array([1, 0, 1, 0, 1, 0])
+
 # Greatest acceleration of the feet relative to the body by its sway [m/s^2], and their distance from it [m].
 _SWAY_ACCELERATION, _ARM = 1.5, 0.3
 
@@ -172,6 +176,23 @@ def with_sway(posture: Float[np.ndarray, "_"], cycles: float, beats: float) -> F
     swayed: np.ndarray = posture[: SWING_HEIGHT + 1].copy()
     swayed[:SWING_HEIGHT] += amplitude * np.array([per_beat, per_cycle, per_beat, per_cycle, per_beat, per_cycle])
     return swayed
+
+
+def sway_extremes(posture: Float[np.ndarray, "7"], sway: tuple[float, ...]) -> list[Float[np.ndarray, "7"]]:
+    """Return the postures at the extremes of a sway, and the one in the middle last.
+
+    Parameters
+    ----------
+    posture : array, shape (7,)
+        The posture in the middle.
+    sway : tuple of float
+        Amplitudes: x, y, z [m], roll, pitch, yaw [rad].
+    """
+    if not any(sway):
+        return [posture]
+    # Half of the axes sway with the beats, half with the cycles: their extremes meet in any combination.
+    beats, cycles = (np.append(np.array(sway) * axes, 0.0) for axes in (_AXES_WITH_BEATS, 1 - _AXES_WITH_BEATS))
+    return [*(posture + a * beats + b * cycles for a in (1, -1) for b in (1, -1)), posture]
 
 
 def sway_fraction(sway: Float[np.ndarray, "6"], frequency: float, beats: int) -> float:
