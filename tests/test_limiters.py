@@ -10,7 +10,6 @@ from tarsus.control.command import Command
 from tarsus.control.limitation import Limitation, LimitationKind
 from tarsus.control.limiter.pending_transition import PendingTransitionLimiter
 from tarsus.control.limiter.protocol import TwistGrant, TwistRequest, granted_twist
-from tarsus.control.limiter.reference_governor import GovernorLimiter
 from tarsus.control.readings import SensorReadings
 from tarsus.control.tick.limit import twist_limiters
 from tarsus.control.walk.felt_feet import FeltFoot
@@ -76,13 +75,6 @@ def test_without_feedback_and_transitions_only_workspace_and_governor_limit():
     (limitation,) = fast.limitations
     assert limitation.granted == fast.fraction
     assert limitation.leg in controller.robot.leg_names
-
-
-def test_the_governor_keeps_a_target_that_another_limiter_set():
-    controller = walking((0.1, 0.0, 0.0))
-    kept = TwistGrant(target=np.array([0.0, 0.0, 0.1]))
-    governor = GovernorLimiter(controller._walk.transitions, lambda: True)
-    assert governor.limit(request(controller, (0.1, 0.0, 0.0)), kept) is kept
 
 
 def examined_targets(controller, monkeypatch):

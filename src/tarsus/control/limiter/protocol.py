@@ -53,7 +53,7 @@ class TwistGrant(NamedTuple):
     fraction : float
         Fraction of the commanded twist, 0 to 1, or more where lost time is made up for.
     target : array, shape (3,), or None
-        The twist to follow; None until a limiter sets it, which ends further limiting of it.
+        The twist to follow; None until the last limiter sets it.
     limitations : tuple of Limitation
         Why the commanded twist is not followed in full.
     """

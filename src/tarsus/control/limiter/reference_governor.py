@@ -43,8 +43,6 @@ class GovernorLimiter:
 
     def limit(self, request: TwistRequest, grant: TwistGrant) -> TwistGrant:
         """Return the grant with the twist to follow."""
-        if grant.target is not None:
-            return grant
         state, transitions, command = request.state, self._transitions, grant.scaled(request.twist)
         stance = (state.down, transitions.timing, transitions.changes_gait, transitions.footholds.bounds)
         # While the same feet stand, what was feasible stays so. Feet that follow the ground stray from what was
