@@ -9,6 +9,7 @@ import pytest
 import tarsus
 from tarsus.control.limiter.protocol import TwistGrant
 from tarsus.control.limiter.stopped_body import StoppedBody
+from tarsus.control.readings import ValidReadings
 from tarsus.kinematics.mass import STANDARD_GRAVITY, total_mass
 from tarsus.load.foot_force import FootForceEstimator
 from tarsus.simulation import SimulatedPlant, terrain
@@ -42,7 +43,8 @@ def pushed(force, tilt=(0.0, 0.0), velocity=0.1 + 0j, seconds=5.0, torques=True)
         joints[leg] = (force / 3 - low) / (high - low), 0.0, 0.0
     given = [None if np.isnan(row).any() else tuple(row) for row in joints] if torques else None
     for _ in range(round(seconds / DT)):
-        body.step(ANGLES.tolist(), given, [0, 2, 4, 5], velocity, DT, tilt=tilt)
+        measured = ValidReadings(joint_angles=ANGLES.tolist(), torques=given, attitude=tilt)
+        body.step(measured, [0, 2, 4, 5], velocity, DT)
     return body
 
 
@@ -84,7 +86,8 @@ def test_without_torques_or_masses_and_without_a_way_nothing_is_found():
     assert pushed(WEIGHT, torques=False).push == 0.0
     assert pushed(WEIGHT, velocity=0j).push == 0.0
     massless = StoppedBody(STRIDER.replace(link_mass=None, link_com=None, body_mass=None))
-    massless.step(ANGLES.tolist(), [(9.0, 0.0, 0.0)] * 6, [0, 1, 2, 3], 0.1j, DT, tilt=(0.0, 0.0))
+    measured = ValidReadings(joint_angles=ANGLES.tolist(), torques=[(9.0, 0.0, 0.0)] * 6)
+    massless.step(measured, [0, 1, 2, 3], 0.1j, DT)
     assert massless.push == 0.0
 
 

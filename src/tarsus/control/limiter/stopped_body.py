@@ -7,7 +7,7 @@ from collections.abc import Sequence
 
 from tarsus.control.limitation import Limitation, LimitationKind
 from tarsus.control.limiter.protocol import TwistGrant, TwistRequest, leads_towards
-from tarsus.control.readings import Vector
+from tarsus.control.readings import ValidReadings
 from tarsus.kinematics.mass import known_weight
 from tarsus.kinematics.scalar_solver import ScalarSolver
 from tarsus.robot.robot import Robot
@@ -44,32 +44,22 @@ class StoppedBody:
         self._mounts: list[complex] = (robot.geometry.mount_x + 1j * robot.geometry.mount_y).tolist()
         self._solver = ScalarSolver(robot)
 
-    def step(
-        self,
-        angles: Sequence[Vector | None] | None,
-        torques: Sequence[Vector | None] | None,
-        bears: Sequence[int],
-        velocity: complex,
-        dt: float,
-        *,
-        tilt: tuple[float, float],
-    ) -> None:
+    def step(self, measured: ValidReadings, bears: Sequence[int], velocity: complex, dt: float) -> None:
         """Take in joint angles and torques.
 
         Parameters
         ----------
-        angles, torques : sequence of ((coxa, femur, tibia) or None), or None
-            As measured [rad, N m]; legs without either do not count.
+        measured : ValidReadings
+            The readings; legs without joint angles or torques do not count.
         bears : sequence of int
             Legs whose feet bear load.
         velocity, dt : complex, float
             Commanded velocity of the body along its own axes [m/s]; time since the last tick [s].
-        tilt : (roll, pitch)
-            Of the body against gravity [rad].
         """
-        push = 0.0
+        push, angles, torques = 0.0, measured.joint_angles, measured.torques
+        roll, pitch = measured.attitude or (0.0, 0.0)
         if angles is not None and torques is not None and velocity and self._weight:
-            force = self._weight * complex(math.sin(tilt[1]), -math.sin(tilt[0]) * math.cos(tilt[1]))
+            force = self._weight * complex(math.sin(pitch), -math.sin(roll) * math.cos(pitch))
             feet = self._solver.feet([each or _ANY for each in angles])
             for leg in bears:
                 torque = torques[leg]

@@ -175,8 +175,7 @@ class BodyMotion:
         velocity, yaw = complex(*state.twist.value[:2].tolist()) * pace, float(state.posture.value[5])
         self.heading.step(valid, float(state.twist.value[2]) * pace, dt, yaw=yaw, rests=rests)
         self.drift = self.stance.not_downhill(self.odometry.step(valid, bears, velocity, dt, yaw=yaw))
-        along, tilt = velocity * cmath.exp(-1j * yaw), valid.attitude or (0.0, 0.0)
-        self.stopped.step(valid.joint_angles, valid.torques, bears, along, dt, tilt=tilt)
+        self.stopped.step(valid, bears, velocity * cmath.exp(-1j * yaw), dt)
         margins = [(places[leg], over[leg] - (self.reach.lowest[leg] + self.lowered)) for leg in bears]
         self._move = BodyMove(velocity, margins, self.slope.refuses or rests, pace)
         self.rates = self._posture.rates(self.ground.plane, self.tilt, self._move)
