@@ -4,14 +4,15 @@ import numpy as np
 import pytest
 
 from tarsus.control.walk.time_scaling import TimeScaling
+from tarsus.robot.joint_limits import JointLimits
 
-SPEED, ACCELERATION = np.full((1, 3), 5.0), np.full((1, 3), 100.0)
+LIMITS = JointLimits(np.full((1, 3), 5.0), np.full((1, 3), 100.0))
 ANYWHERE = np.broadcast_to([-np.inf, np.inf], (1, 3, 2))
 
 
 def driven(way, ticks, dt):
     """Go along a way; return the own times and the joints' speed and acceleration over the greatest."""
-    own = TimeScaling(way(0.0), SPEED, ACCELERATION, ANYWHERE)
+    own = TimeScaling(way(0.0), LIMITS, ANYWHERE)
     time, times, angles = 0.0, [0.0], [own.angles]
     for _ in range(ticks):
         time = own.advance(lambda step, time=time: time + step, way, dt)
@@ -46,7 +47,7 @@ def test_where_no_high_acceleration_is_ahead_it_looks_again_once_that_is_half_ov
     def way(time):
         return np.array([[0.5, 0.2, -0.3]]) * np.sin(8 * time) ** 2
 
-    own, dt, time, looks = TimeScaling(way(0.0), SPEED, ACCELERATION, ANYWHERE), 0.01, 0.0, []
+    own, dt, time, looks = TimeScaling(way(0.0), LIMITS, ANYWHERE), 0.01, 0.0, []
     for tick in range(200):
         steps = []
         time = own.advance(lambda step, time=time, steps=steps: steps.append(step) or time + step, way, dt)
@@ -59,7 +60,7 @@ def test_where_no_high_acceleration_is_ahead_it_looks_again_once_that_is_half_ov
 
 
 def test_a_path_beyond_the_joints_is_followed_as_far_as_possible():
-    own = TimeScaling(np.zeros((1, 3)), SPEED, ACCELERATION, ANYWHERE)
+    own = TimeScaling(np.zeros((1, 3)), LIMITS, ANYWHERE)
     tried = []
 
     def jumping(time):
@@ -81,7 +82,7 @@ def test_a_joint_that_reverses_at_once_brakes_as_hard_as_it_may(others):
         back = 30 * min(time, 0.07) ** 2 - 4.2 * max(time - 0.07, 0.0)
         return np.array([[back, others * ahead, 0.0]])
 
-    own, time, angles = TimeScaling(way(0.0), SPEED, ACCELERATION, ANYWHERE), 0.0, []
+    own, time, angles = TimeScaling(way(0.0), LIMITS, ANYWHERE), 0.0, []
     for _ in range(30):
         time = own.advance(lambda step, time=time: time + step, way, 0.01)
         angles.append(own.angles)
@@ -95,7 +96,7 @@ def test_a_joint_that_reverses_at_once_brakes_as_hard_as_it_may(others):
 def test_a_walk_whose_feet_keep_to_their_paths_slows_down_where_joints_are_a_little_behind():
     rates = {}
     for exact in (False, True):
-        own, time = TimeScaling(np.zeros((1, 3)), SPEED, ACCELERATION, ANYWHERE), 0.0
+        own, time = TimeScaling(np.zeros((1, 3)), LIMITS, ANYWHERE), 0.0
         for _ in range(5):
             time = own.follow(
                 lambda step, time=time: time + step, lambda time: np.full((1, 3), 0.15), 0.01, exact=exact

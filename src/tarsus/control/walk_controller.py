@@ -124,7 +124,7 @@ class WalkController:
         foot_targets, solver = FootTargets(self.robot), JointSolver(self.robot)
         transitions = TransitionExecutor(stance, foot_targets)
         state = GaitState.standing(stance.rest, transitions.pose.target)
-        time_scaling = TimeScaling(solver.angles(state), *limits, self.robot.limits)
+        time_scaling = TimeScaling(solver.angles(state), limits, self.robot.limits)
         adaptation = GroundAdaptation() if adaptation is None else adaptation
         body = BodyMotion(self.robot, levelling=levelling, adaptation=adaptation)
         loads = FootLoads(self.robot, admittance)

@@ -12,7 +12,7 @@ from tarsus.control.walk.state import PHASE_TOLERANCE, POSITION_TOLERANCE, GaitS
 from tarsus.gait.swing_trajectory import quintic
 
 if TYPE_CHECKING:
-    from jaxtyping import Bool, Complex, Float
+    from jaxtyping import Complex
 
 __all__ = ["LATEST_LIFT_OFF", "TARGET_FREEZE", "advance", "land", "stance_tolerance"]
 
@@ -78,22 +78,18 @@ def advance(state: GaitState, inputs: StepInputs, dt: float) -> GaitState:
         return after
     final = final_footholds(after, rest=inputs.rest, bandwidth=inputs.bandwidth) if stopping else None
     if any(due):
-        after = _lift(after, inputs, np.array(due), np.array(since_lift) - elapsed, final)
+        after = _lift(after, inputs, due, [since - elapsed for since in since_lift], final)
     return _swing(after, inputs, since_lift, final)
 
 
 def _lift(
-    state: GaitState,
-    inputs: StepInputs,
-    due: Bool[np.ndarray, "legs"],
-    late: Float[np.ndarray, "legs"],
-    final: Complex[np.ndarray, "legs"] | None,
+    state: GaitState, inputs: StepInputs, due: list[bool], late: list[float], final: Complex[np.ndarray, "legs"] | None
 ) -> GaitState:
     """Lift the feet that are due; those that may not, or need not, miss this step.
 
     `late` is the time since each was due at the start of the tick [cycles], `final` where feet stop, if they do.
     """
-    lifts = due.copy()
+    lifts = np.array(due)
     lifts[list(inputs.excluded)] = False
     if final is not None:
         away = np.abs(state.foot - final) > stance_tolerance(state)

@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING, TypeVar
 
 import numpy as np
 
+from tarsus.robot.joint_limits import JointLimits
+
 if TYPE_CHECKING:
     from jaxtyping import Float
 
@@ -43,8 +45,8 @@ class TimeScaling:
     ----------
     angles : array, shape (legs, 3)
         Joint angles at the start, at rest [rad].
-    speed, acceleration : array, shape (legs, 3)
-        Greatest of each joint [rad/s], [rad/s^2].
+    joint_limits : JointLimits
+        Greatest speed and acceleration of each joint.
     limits : array, shape (legs, 3, 2)
         Lower and upper limit of each joint [rad].
 
@@ -57,15 +59,11 @@ class TimeScaling:
     """
 
     def __init__(
-        self,
-        angles: Float[np.ndarray, "legs 3"],
-        speed: Float[np.ndarray, "legs 3"],
-        acceleration: Float[np.ndarray, "legs 3"],
-        limits: Float[np.ndarray, "legs 3 2"],
+        self, angles: Float[np.ndarray, "legs 3"], joint_limits: JointLimits, limits: Float[np.ndarray, "legs 3 2"]
     ) -> None:
         self.angles, self.rate = angles, 1.0
-        self._acceleration, self._hardest = acceleration, _USED * acceleration
-        self._top_speed = _USED * speed
+        speed, self._acceleration = joint_limits
+        self._top_speed, self._hardest = _USED * speed, _USED * self._acceleration
         self._softest, self._slowest = float(self._hardest.min()) / 2, float(self._top_speed.min())
         self._ends: Float[np.ndarray, "2 legs 3"] = np.moveaxis(limits, -1, 0)[::-1].copy()
         self._speeds, self._target = np.zeros_like(angles), angles
