@@ -9,7 +9,7 @@ from scipy.integrate import solve_ivp
 from sample_gait_states import EARTH, FACING, moment_of
 from sample_stances import polygon_radii, setup_of, velocity_limits_of
 from tarsus.control.filters import CriticallyDamped, integral_factors
-from tarsus.control.walk.reference_governor import FootPrediction, governed_twist
+from tarsus.control.walk.reference_governor import FootPrediction
 from tarsus.control.walk.state import integrate_twist
 from tarsus.gait.foot_polygons import NORMALS
 
@@ -36,7 +36,7 @@ def polygon_excess(now, targets, *, begins, ends, bounds, bandwidth):
 
 
 def governed(now, current, command, *, begins, ends, bounds, bandwidth):
-    return governed_twist(FootPrediction.of(now, begins, ends, bandwidth), current, command, bounds)
+    return FootPrediction.of(now, begins, ends, bandwidth).governed_twist(current, command, bounds)
 
 
 def worst(now, target, given_as):

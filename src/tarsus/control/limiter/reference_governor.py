@@ -11,7 +11,7 @@ import numpy as np
 
 from tarsus.control.limiter.protocol import TwistGrant, TwistRequest
 from tarsus.control.transition.executor import TransitionExecutor
-from tarsus.control.walk.reference_governor import FootPrediction, governed_twist
+from tarsus.control.walk.reference_governor import FootPrediction
 from tarsus.control.walk.state import GaitState
 from tarsus.gait.foot_polygons import NORMALS_CONJUGATE
 
@@ -60,7 +60,7 @@ class GovernorLimiter:
             return request.target
         transitions, state = self._transitions, request.state
         prediction = FootPrediction.of(state, *transitions.stance_intervals(state), transitions.bandwidth)
-        return governed_twist(prediction, request.target, np.array(command), transitions.bounds)
+        return prediction.governed_twist(request.target, np.array(command), transitions.bounds)
 
     def _is_steady(self, request: TwistRequest, twist: list[float]) -> bool:
         """Return whether the robot walks at the twist and at its cycle time."""

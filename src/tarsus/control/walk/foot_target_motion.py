@@ -3,27 +3,22 @@
 from __future__ import annotations
 
 import cmath
-from collections.abc import Sequence
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from tarsus.control.filters import CriticallyDamped
 from tarsus.control.walk.state import GaitState
-from tarsus.gait.stance.stance_geometry import SWING_HEIGHT, StanceGeometry, joint_margin, rotation_rows
 from tarsus.kinematics.polygon import hull_margin
-from tarsus.robot.robot import Robot
 
 if TYPE_CHECKING:
     from jaxtyping import Bool, Complex, Float
 
-__all__ = ["FootTargetMotion", "begin_foot_target", "best_body_shift", "reachable_fraction"]
+__all__ = ["FootTargetMotion", "begin_foot_target", "best_body_shift"]
 
 
 # Greatest bandwidth [rad/s] and speed [m/s] with which a foot follows its target.
 _BANDWIDTH, _SPEED = 5.0, 0.12
-# Fractions of a path that are tested for reach.
-_TRIED = np.arange(1, 17) / 16
 # Shifts of the body that are tried when legs leave the gait [m].
 _STEPS = np.arange(-4, 5) * 0.01
 _SHIFTS = (_STEPS[:, None] + 1j * _STEPS).ravel()
@@ -102,31 +97,3 @@ def best_body_shift(rest: Complex[np.ndarray, "legs"], centre: complex, sets: Bo
     margins = hull_margin(feet, sets, centres[:, None, :]).min(axis=-1)
     # A shift costs reach, which is weighed against the margin.
     return complex(_SHIFTS[int(np.argmax(margins - np.abs(_SHIFTS) / 4))])
-
-
-def reachable_fraction(
-    robot: Robot,
-    postures: Sequence[Float[np.ndarray, "7"]],
-    leg: int,
-    start: Float[np.ndarray, "3"],
-    end: Float[np.ndarray, "3"],
-) -> float:
-    """Return the fraction of a straight path that a foot can follow in all of some postures.
-
-    Parameters
-    ----------
-    robot : Robot
-        A single robot.
-    postures : sequence of array, shape (7,)
-        Postures of the body: see `tarsus.gait.stance.stance_geometry`.
-    leg : int
-        Index of the leg.
-    start, end : array, shape (3,)
-        Ends of the path in the heading frame [m].
-    """
-    rows = np.array(postures)
-    rotation = np.array([rotation_rows(*row) for row in rows[:, 3:SWING_HEIGHT].tolist()])[:, None, None]
-    stance = StanceGeometry(np.zeros(robot.legs, dtype=complex), rotation, rows[:, :3].T[..., None, None], 0.0)
-    points = (start + _TRIED[:, None] * (end - start)).T[..., None] + np.zeros(robot.legs)
-    works = (joint_margin(robot.geometry, stance.solve(robot.geometry, *points))[..., leg] >= 0).all(axis=0)
-    return 1.0 if works.all() else float(_TRIED[int(np.argmin(works))] - _TRIED[0])

@@ -10,10 +10,16 @@ import numpy as np
 
 from tarsus.control.command import Command
 from tarsus.control.limitation import Cause, Limitation, LimitationKind
-from tarsus.control.walk.foot_target_motion import FootTargetMotion, begin_foot_target, reachable_fraction
+from tarsus.control.walk.foot_target_motion import FootTargetMotion, begin_foot_target
 from tarsus.control.walk.state import GaitState
 from tarsus.errors import InputError
-from tarsus.gait.stance.stance_geometry import SWING_HEIGHT, sway_extremes
+from tarsus.gait.stance.stance_geometry import (
+    SWING_HEIGHT,
+    StanceGeometry,
+    joint_margin,
+    rotation_rows,
+    sway_extremes,
+)
 from tarsus.robot.robot import Robot
 
 if TYPE_CHECKING:
@@ -21,6 +27,8 @@ if TYPE_CHECKING:
 
 __all__ = ["FootTargets", "excluded_legs"]
 
+# Fractions of a path that are tested for reach.
+_TRIED = np.arange(1, 17) / 16
 _BELOW_GROUND = "the point is below the ground; the foot stays on it"
 
 
@@ -138,8 +146,18 @@ class FootTargets:
             else:
                 continue
             end[2] = max(end[2], 0.0)
-            fraction = self._fractions[leg] = reachable_fraction(self._robot, postures, leg, start, end)
+            fraction = self._fractions[leg] = self._reachable(leg, end, postures)
             self._motions[leg] = motion._replace(target=start + fraction * (end - start))
+
+    def _reachable(self, leg: int, end: Float[np.ndarray, "3"], postures: list[Float[np.ndarray, "7"]]) -> float:
+        """Return the fraction of a straight path to a point that a foot can follow in all of some postures."""
+        geometry, start, rows = self._robot.geometry, self._motions[leg].position.value, np.array(postures)
+        rotation = np.array([rotation_rows(*row) for row in rows[:, 3:SWING_HEIGHT].tolist()])[:, None, None]
+        rest = np.zeros(self._robot.legs)
+        stance = StanceGeometry(rest.astype(complex), rotation, rows[:, :3].T[..., None, None], 0.0)
+        points = (start + _TRIED[:, None] * (end - start)).T[..., None] + rest
+        works = (joint_margin(geometry, stance.solve(geometry, *points))[..., leg] >= 0).all(axis=0)
+        return 1.0 if works.all() else float(_TRIED[int(np.argmin(works))] - _TRIED[0])
 
     def apply(self, state: GaitState, time: float, *, swing_time: float) -> GaitState:
         """Return the state with the feet taken out of the gait moved by a time, except those that are in a swing again.
