@@ -6,7 +6,9 @@ import numpy as np
 import pytest
 
 from sample_gait_states import setup_of, step_inputs_of
+from tarsus.control.filters import CriticallyDamped
 from tarsus.control.walk.foothold import FootholdPredictor
+from tarsus.control.walk.state import GaitState
 from tarsus.gait.foot_polygons import NORMALS
 
 REST = 0.2 + 0.1j
@@ -16,7 +18,9 @@ def predictor(twist, bound):
     """A predictor for feet that may be put down this far from their rest foothold."""
     bounds = {"placement_bounds": np.full((6, 16), bound), "placement_radii": [bound] * 6}
     inputs = step_inputs_of(setup_of("strider"), np.full(6, REST), twist, bandwidth=8.0, **bounds)
-    return FootholdPredictor(0.3 + 0.2j, complex(math.cos(0.4), math.sin(0.4)), list(twist), [0.0] * 3, inputs, {})
+    now = GaitState.standing(np.full(6, REST), np.zeros(13))
+    now = now._replace(origin=0.3 + 0.2j, yaw=0.4, twist=CriticallyDamped.still(np.array(twist)))
+    return FootholdPredictor(now, inputs)
 
 
 def seen_at_touchdown(foothold, twist, touchdown):

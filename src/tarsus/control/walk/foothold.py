@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import cmath
 import math
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -46,43 +46,22 @@ def final_footholds(
         return None
     w = bandwidth
     origin, yaw = integrate_twist(now.origin, now.yaw, ((2 * now.twist.value + now.twist.rate / w) / w).tolist())
-    final: np.ndarray = origin + cmath.exp(1j * yaw) * rest
-    return final
+    return np.asarray(origin + cmath.exp(1j * yaw) * rest)
 
 
-class FootholdPredictor(NamedTuple):
+class FootholdPredictor:
     """Predicts footholds from the motion of the heading frame, in plain numbers.
 
-    Attributes
+    Parameters
     ----------
-    origin, turn : complex
-        Origin of the heading frame in G [m]; its rotation ``exp(i yaw)``.
-    value, rate : list of float
-        Its twist [m/s, m/s, rad/s], and the rate of change of the twist.
-    inputs : StepInputs
-        Inputs of the step: with their bandwidth that rate decays.
-    known : dict of float to (complex, complex)
-        Predictions that are made: legs that swing together ask for the same times.
+    now, inputs : GaitState, StepInputs
+        The state in which the twist begins to follow its target; the inputs.
     """
 
-    origin: complex
-    turn: complex
-    value: list[float]
-    rate: list[float]
-    inputs: StepInputs
-    known: dict[float, tuple[complex, complex]]
-
-    @classmethod
-    def of(cls, now: GaitState, inputs: StepInputs) -> FootholdPredictor:
-        """Return the predictor for a state.
-
-        Parameters
-        ----------
-        now, inputs : GaitState, StepInputs
-            The gait state; inputs of the step.
-        """
-        turn = cmath.exp(1j * now.yaw)
-        return cls(now.origin, turn, now.twist.value.tolist(), now.twist.rate.tolist(), inputs, {})
+    def __init__(self, now: GaitState, inputs: StepInputs) -> None:
+        self._now, self._turn, self._inputs = now, cmath.exp(1j * now.yaw), inputs
+        # Position and rotation of the heading frame by the time ahead: legs that swing together ask for the same times.
+        self._known: dict[float, tuple[complex, complex]] = {}
 
     def foothold(self, leg: int, touchdown: float, mid_stance: float) -> complex:
         """Return the foothold of a foot in G [m].
@@ -94,7 +73,7 @@ class FootholdPredictor(NamedTuple):
         touchdown, mid_stance : float
             Time until touchdown, and until the middle of the stance [s].
         """
-        inputs, rest = self.inputs, complex(self.inputs.rest[leg])
+        inputs, rest = self._inputs, complex(self._inputs.rest[leg])
         position, rotation = self._body(mid_stance)
         beside = 0j if inputs.felt is None else inputs.felt.beside.get(leg, 0j)
         foothold = position + rotation * (rest + beside)
@@ -106,15 +85,15 @@ class FootholdPredictor(NamedTuple):
             fraction = float((inputs.placement_bounds[leg] / np.maximum(along, 1e-12)).min())
             if fraction < 1 - _ROUNDING:
                 foothold = position + rotation * (rest + fraction * out)
-        return self.origin + self.turn * foothold
+        return self._now.origin + self._turn * foothold
 
     def _body(self, ahead: float) -> tuple[complex, complex]:
         """Return position and rotation of the heading frame after a time, relative to the present ones."""
-        if ahead not in self.known:
-            w = self.inputs.bandwidth
+        if ahead not in self._known:
+            w, twist = self._inputs.bandwidth, self._now.twist
             decayed = (1 - math.exp(-w * ahead) * (1 + w * ahead)) / (w * w)
-            (vx, vy, wz), (ax, ay, az) = self.value, self.rate
+            (vx, vy, wz), (ax, ay, az) = twist.value.tolist(), twist.rate.tolist()
             travel = (vx * ahead + ax * decayed, vy * ahead + ay * decayed, wz * ahead + az * decayed)
             position, angle = integrate_twist(0j, 0.0, travel)
-            self.known[ahead] = position, cmath.exp(1j * angle)
-        return self.known[ahead]
+            self._known[ahead] = position, cmath.exp(1j * angle)
+        return self._known[ahead]

@@ -132,7 +132,7 @@ def _swing(
     """Move the swinging feet, and put those down whose swing is over."""
     duty_factor = inputs.gait.duty_factor
     swing, stance = 1 - duty_factor, duty_factor / inputs.frequency
-    predictor = FootholdPredictor.of(state, inputs)
+    predictor = FootholdPredictor(state, inputs)
     phases, feet, targets = state.swing_phase.copy(), state.foot.copy(), state.foothold.copy()
     velocities, accelerations = state.swing_velocity.copy(), state.swing_acceleration.copy()
     travel, landed = 1.0 if inputs.felt is None else inputs.felt.travel, []
