@@ -64,9 +64,10 @@ class GovernorLimiter:
 
     def _is_steady(self, request: TwistRequest, twist: list[float]) -> bool:
         """Return whether the robot walks at the twist and at its cycle time."""
-        value = request.state.twist.value.tolist()
+        value, transitions = request.state.twist.value.tolist(), self._transitions
         difference = max(abs(a - b) for a, b in zip(value, twist, strict=True))
-        steady = self._transitions.timing_is_steady and difference <= _STEADY * max(map(abs, twist))
+        steady = not transitions.changes_gait and transitions.timing.frequency == transitions.frequency
+        steady = steady and difference <= _STEADY * max(map(abs, twist))
         return steady and not (request.state.felt and self._is_behind(request.state))
 
     def _is_behind(self, state: GaitState) -> bool:

@@ -91,11 +91,6 @@ class TransitionExecutor:
         return self._next is not None
 
     @property
-    def timing_is_steady(self) -> bool:
-        """Whether the steps are as fast as planned, and the gait stays."""
-        return not self.changes_gait and self.timing.frequency == self.frequency
-
-    @property
     def frequency(self) -> float:
         """The step frequency to reach [1/s]."""
         return 1 / (self.lengthened * self.current.cycle_timing.cycle_time)
@@ -213,9 +208,8 @@ class TransitionExecutor:
         ends = time_to_touchdown(now.gait, self.timing).max() + delays
         bounds = self._foot_targets.without_bounds(self.footholds.bounds_with(planned))
         bounds = self.footholds.shifted(np.minimum(bounds, planned.final_limits.bounds))
-        begins, bandwidth = np.zeros(delays.shape), timing.bandwidth
-        over = FootPrediction.of(now.gait, begins, ends, bandwidth).excess(now.twist[None], bounds)
-        over = over.max(axis=(1, 2, 3, 4))
+        prediction = FootPrediction.of(now.gait, np.zeros(delays.shape), ends, timing.bandwidth)
+        over = prediction.excess(now.twist[None], bounds).max(axis=(1, 2, 3, 4))
         # Symmetric legs suit equally well but for rounding; the first of them lifts, on any machine.
         first = int((over <= over.min() + _ROUNDING).argmax())
         if over[first] <= POSITION_TOLERANCE:

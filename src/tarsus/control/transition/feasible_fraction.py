@@ -87,18 +87,19 @@ def reachable_fraction(robot: Robot, start: StanceTarget, end: StanceTarget) -> 
     cause : Cause or None
         What limits it.
     """
-    unreachable = _first_unreachable(robot, start, end)
+    fractions = np.arange(1, _SAMPLES + 1) / _SAMPLES
+    fails = (_reach_margin(robot, [start.towards(end, part) for part in fractions.tolist()]) < 0).any(axis=-1)
     yield
 
     def works(fraction: float) -> bool:
         return bool((rest_margin(robot, start.towards(end, fraction).stand) >= 0).all())
 
-    if unreachable is None:
+    if not fails.any():
         if works(1.0):
             return 1.0, None
         yield
-        unreachable = 1.0
-    feasible, infeasible = yield from _bracket(works, unreachable)
+    # The first sample that fails; where all are in reach, it is the end that has no room.
+    feasible, infeasible = yield from _bracket(works, float(fractions[fails.argmax()]) if fails.any() else 1.0)
     yield
     return feasible, reach_cause(robot, start.towards(end, infeasible).stand)
 
@@ -144,14 +145,6 @@ def _bracket(works: Callable[[float], bool], infeasible: float) -> Incremental[t
         if count % _PER_TICK:
             yield
     return feasible, infeasible
-
-
-def _first_unreachable(robot: Robot, start: StanceTarget, end: StanceTarget) -> float | None:
-    """Return the first sample of a path at which a leg does not reach its rest foothold; None where all do."""
-    fractions = np.arange(1, _SAMPLES + 1) / _SAMPLES
-    stances = [start.towards(end, fraction) for fraction in fractions.tolist()]
-    fails = (_reach_margin(robot, stances) < 0).any(axis=-1)
-    return float(fractions[fails.argmax()]) if fails.any() else None
 
 
 def first_increment(robot: Robot, start: StanceTarget, end: StanceTarget, fraction: float) -> float:

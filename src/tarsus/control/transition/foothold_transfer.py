@@ -45,23 +45,18 @@ class FootholdTransfer:
     """
 
     def __init__(self, transition: StanceTransition) -> None:
-        self.limits: VelocityLimits = transition.final_limits
-        self.bounds: Float[np.ndarray, "legs 16"] = transition.final_limits.bounds
-        self.rest: Complex[np.ndarray, "legs"] = transition.rest
-        self._level_rest, self._shift = self.rest, np.zeros_like(self.rest)
-        self._sides_shift: Float[np.ndarray, "legs 16"] = np.zeros_like(self.bounds)
-        self.transferred = np.ones(len(self.rest), dtype=bool)
-        self._next_bounds = self.bounds
-        self.new_rest = self.rest
+        self.new_rest = self._level_rest = transition.rest
+        self._shift, self._sides_shift = np.zeros_like(self.new_rest), np.zeros_like(transition.final_limits.bounds)
+        self.transferred = np.ones(len(self.new_rest), dtype=bool)
         self._lands_at_old = ~self.transferred
-        self._update_placement()
+        self.complete(transition.final_limits)
 
     def _update_placement(self) -> None:
         landing = np.where(self._lands_at_old[:, None], self.bounds, self._next_bounds)
         along = (NORMALS_CONJUGATE * self._level_rest[:, None]).real
         self.placement_bounds: Float[np.ndarray, "legs 16"] = np.maximum(landing - along, 0.0)
         self.placement_radii: list[float] = self.placement_bounds.min(axis=1).tolist()
-        self.rest = self._level_rest + self._shift
+        self.rest: Complex[np.ndarray, "legs"] = self._level_rest + self._shift
 
     def shift(self, shift: Complex[np.ndarray, "legs"]) -> None:
         """Shift rest footholds and polygons, as a slope asks for; stances are planned without it.
@@ -160,5 +155,7 @@ class FootholdTransfer:
         limits : VelocityLimits
             The limits.
         """
-        self.limits, self.bounds, self._next_bounds = limits, limits.bounds, limits.bounds
+        self.limits: VelocityLimits = limits
+        self.bounds: Float[np.ndarray, "legs 16"] = limits.bounds
+        self._next_bounds: Float[np.ndarray, "legs 16"] = limits.bounds
         self._update_placement()

@@ -157,8 +157,7 @@ class TimeScaling:
     def _stopping_speeds(self, dt: float) -> Float[np.ndarray, "2 legs 3"]:
         """Return the greatest speeds upward and downward from which the joints stop there, half as hard as they can."""
         braking = self._hardest * (dt / 2)
-        speeds: np.ndarray = np.sqrt(braking * braking + self._hardest * np.maximum(self._left(), 0.0)) - braking
-        return speeds
+        return np.asarray(np.sqrt(braking * braking + self._hardest * np.maximum(self._left(), 0.0)) - braking)
 
     def _demand(
         self, angles: Float[np.ndarray, "legs 3"], dt: float, between: float

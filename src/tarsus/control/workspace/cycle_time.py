@@ -113,10 +113,8 @@ def _timing(
     cycle_time = max(cycle_time, least)
     sizes = _sizes(shortest, cycle_time)
     spare = cycle_time / shortest[-1]
-    straight_on, on_the_spot = (
-        float(_cap(sizes[part], spare[part], stroke[part])) for part in (slice(_STRAIGHT), slice(_STRAIGHT, None))
-    )
-    return CycleTiming(cycle_time, straight_on, on_the_spot)
+    parts = (slice(_STRAIGHT), slice(_STRAIGHT, None))
+    return CycleTiming(cycle_time, *(float(_cap(sizes[part], spare[part], stroke[part])) for part in parts))
 
 
 def _cap(
