@@ -49,7 +49,10 @@ class FootholdTransfer:
         self._shift, self._sides_shift = np.zeros_like(self.new_rest), np.zeros_like(transition.final_limits.bounds)
         self.transferred = np.ones(len(self.new_rest), dtype=bool)
         self._lands_at_old = ~self.transferred
-        self.complete(transition.final_limits)
+        self.limits: VelocityLimits = transition.final_limits
+        self.bounds: Float[np.ndarray, "legs 16"] = self.limits.bounds
+        self._next_bounds = self.bounds
+        self._update_placement()
 
     def _update_placement(self) -> None:
         landing = np.where(self._lands_at_old[:, None], self.bounds, self._next_bounds)
@@ -155,7 +158,5 @@ class FootholdTransfer:
         limits : VelocityLimits
             The limits.
         """
-        self.limits: VelocityLimits = limits
-        self.bounds: Float[np.ndarray, "legs 16"] = limits.bounds
-        self._next_bounds: Float[np.ndarray, "legs 16"] = limits.bounds
+        self.limits, self.bounds, self._next_bounds = limits, limits.bounds, limits.bounds
         self._update_placement()
