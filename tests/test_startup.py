@@ -10,6 +10,7 @@ from hypothesis import Phase, given, settings
 from hypothesis import strategies as st
 
 from gait_robots import PRESETS, preset
+from tarsus.control.startup.builder import BodyTarget
 from tarsus.control.startup.foothold_change import change_footholds
 from tarsus.control.startup.foothold_stations import foothold_stations
 from tarsus.control.startup.initial_state import initial_state, over_feet
@@ -382,11 +383,15 @@ def test_a_final_stance_with_other_angles_is_rejected():
 def test_an_unloaded_foot_is_not_dragged():
     robot = preset("strider")
     builder = initial_state(robot, stance_angles(robot), joint_limits(robot)).unload(0)
-    aside = Pose(builder.body.rotation, builder.body.position + np.array([0.02, 0.0, 0.001]))
+    aside, up = (
+        BodyTarget(
+            Pose(builder.body.rotation, builder.body.position + np.array([0.02, 0.0, height])), np.zeros(3), belly=False
+        )
+        for height in (0.001, 0.04)
+    )
     with pytest.raises(UnreachableError, match=r"foot of leg front left would drag .* rises by 1.0 mm"):
-        builder.move_body("move", aside)
-    up = Pose(builder.body.rotation, builder.body.position + np.array([0.02, 0.0, 0.04]))
-    assert builder.move_body("move", up).feet[0, 2] == pytest.approx(0.04)
+        builder.move_body("move", aside, builder.contacts)
+    assert builder.move_body("move", up, builder.contacts).feet[0, 2] == pytest.approx(0.04)
 
 
 def test_only_a_lying_robot_folds():

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from tarsus.control.sequence.stage import Stage
-from tarsus.control.startup.builder import GROUND_TOLERANCE, SequenceBuilder
+from tarsus.control.startup.builder import GROUND_TOLERANCE, BodyTarget, SequenceBuilder
 from tarsus.kinematics.mass import centre_of_mass
 from tarsus.kinematics.pose import Pose
 from tarsus.kinematics.underside import belly_depth, underside_points
@@ -16,30 +16,12 @@ from tarsus.kinematics.underside import belly_depth, underside_points
 if TYPE_CHECKING:
     from jaxtyping import Bool, Float
 
-__all__ = ["BodyTarget", "body_targets", "levelling_rotation", "stage_to"]
+__all__ = ["body_targets", "levelling_rotation", "stage_to"]
 
 # Number of body heights to try between lying and standing.
 _HEIGHTS = 6
 # How far the body may rise above its initial and its final height to make room for its legs [m].
 _EXTRA_HEIGHT = 0.04
-
-
-class BodyTarget(NamedTuple):
-    """A level pose of the body.
-
-    Attributes
-    ----------
-    body : Pose
-        Pose of B in G.
-    pivot : array, shape (3,)
-        Point in B that moves there in a straight line [m].
-    belly : bool
-        Whether the body lies on the ground in this pose.
-    """
-
-    body: Pose
-    pivot: Float[np.ndarray, "3"]
-    belly: bool
 
 
 def body_targets(builder: SequenceBuilder, height: float) -> tuple[BodyTarget, ...]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any, Self
+from typing import TYPE_CHECKING, Any, NamedTuple, Self
 
 import numpy as np
 
@@ -21,13 +21,31 @@ from tarsus.robot.robot import Robot
 if TYPE_CHECKING:
     from jaxtyping import Bool, Float
 
-__all__ = ["GROUND_TOLERANCE", "SequenceBuilder", "body_contacts"]
+__all__ = ["GROUND_TOLERANCE", "BodyTarget", "SequenceBuilder", "body_contacts"]
 
 GROUND_TOLERANCE = 1e-7
 """Height below which a point counts as on the ground [m]."""
 
 # Stages in which no joint moves by more are omitted [rad].
 _MIN_MOTION = 1e-12
+
+
+class BodyTarget(NamedTuple):
+    """A level pose of the body.
+
+    Attributes
+    ----------
+    body : Pose
+        Pose of B in G.
+    pivot : array, shape (3,)
+        Point in B that moves there in a straight line [m].
+    belly : bool
+        Whether the body lies on the ground in this pose.
+    """
+
+    body: Pose
+    pivot: Float[np.ndarray, "3"]
+    belly: bool
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -118,28 +136,19 @@ class SequenceBuilder:
             belly=self.belly,
         )
 
-    def move_legs(
-        self,
-        name: str,
-        legs: Bool[np.ndarray, "legs"],
-        angles: Float[np.ndarray, "legs 3"],
-        *,
-        landed: bool,
-        margin: float = 0.0,
-    ) -> Self:
+    def move_legs(self, name: str, angles: Float[np.ndarray, "legs 3"], *, landed: bool, margin: float = 0.0) -> Self:
         """Move legs through the air to joint angles, with the body stationary and no point below the ground.
 
         Parameters
         ----------
         name : str
             Name of the stages.
-        legs : array of bool, shape (legs,)
-            Legs to move.
         angles : array, shape (legs, 3)
-            Joint angles of these legs at the end [rad].
+            Joint angles at the end; legs that have them already stay where they are [rad].
         landed, margin : bool, float
-            Whether the feet are on the ground at the end; least stability margin [m].
+            Whether the feet that move are on the ground at the end; least stability margin [m].
         """
+        legs = (self.angles != angles).any(-1)
         paths = {leg: self._path(name, leg, angles[leg]) for leg in np.flatnonzero(legs).tolist()}
         count, builder = max(map(len, paths.values()), default=0), self
         for k in range(count):
@@ -183,31 +192,19 @@ class SequenceBuilder:
         changes = {"cartesian": legs, "feet_end": feet, "swing_height": self.swing_height}
         return self._add(name, margin=margin, contacts=stance, contacts_end=stance | legs, **changes)
 
-    def move_body(
-        self,
-        name: str,
-        body: Pose,
-        *,
-        pivot: Float[np.ndarray, "3"] | None = None,
-        supports: Float[np.ndarray, "n 3"] | None = None,
-        stationary: Bool[np.ndarray, "legs"] | None = None,
-    ) -> Self:
-        """Move the body with all feet on the ground stationary; legs in the air keep their joint angles.
+    def move_body(self, name: str, target: BodyTarget, stationary: Bool[np.ndarray, "legs"]) -> Self:
+        """Move the body over stationary feet, supported by its underside as well where it comes to lie on the ground.
 
         Parameters
         ----------
-        name, body : str, Pose
-            Name of the stage; pose of B in G at the end.
-        pivot : array, shape (3,), optional
-            Point in B that moves in a straight line [m]; by default the origin.
-        supports : array, shape (n, 3), optional
-            Points in G other than feet that bear load throughout [m]; by default none.
-        stationary : array of bool, shape (legs,), optional
-            Further legs whose feet are stationary without bearing load; by default none.
+        name, target : str, BodyTarget
+            Name of the stage; pose of the body at the end.
+        stationary : array of bool, shape (legs,)
+            Legs whose feet are stationary, with or without load; the others keep their joint angles.
         """
-        builder = replace(self, belly=False, supports=np.zeros((0, 3)) if supports is None else supports)
-        cartesian = self.contacts if stationary is None else self.contacts | stationary
-        return builder._add(name, end=body, pivot=np.zeros(3) if pivot is None else pivot, cartesian=cartesian)
+        supports = body_contacts(self.robot, self.body) if target.belly else np.zeros((0, 3))
+        builder = replace(self, belly=False, supports=supports)
+        return builder._add(name, end=target.body, pivot=target.pivot, cartesian=stationary)
 
     def unload(self, leg: int) -> Self:
         """Return the robot with a leg that bears no load, neither on its foot nor on its knee or femur axis.

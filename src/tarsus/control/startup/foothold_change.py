@@ -92,4 +92,4 @@ def _move(
     if (branches(builder.robot, angles) == branches(builder.robot, builder.angles))[legs].all():
         with suppress(TarsusError):
             return builder.swing(name, legs, replace(builder, angles=angles).feet, margin=margin)
-    return builder.move_legs(name, legs, angles, landed=True, margin=margin)
+    return builder.move_legs(name, np.where(legs[:, None], angles, builder.angles), landed=True, margin=margin)

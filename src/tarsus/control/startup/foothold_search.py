@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from tarsus.control.startup.body_targets import BodyTarget, stage_to
-from tarsus.control.startup.builder import SequenceBuilder
+from tarsus.control.startup.body_targets import stage_to
+from tarsus.control.startup.builder import BodyTarget, SequenceBuilder
 from tarsus.errors import TarsusError
 from tarsus.kinematics.folded_pose import folded_pose
 from tarsus.kinematics.inverse import inverse_kinematics
@@ -86,9 +86,9 @@ def _move_leg(
     builder: SequenceBuilder, leg: int, angles: Float[np.ndarray, "3"], verb: str, *, landed: bool, margin: float = 0.0
 ) -> SequenceBuilder:
     """Move one leg through the air to joint angles."""
-    only, name = np.arange(builder.robot.legs) == leg, f"{verb} {builder.robot.leg_codes[leg]}"
-    target = np.where(only[:, None], angles, builder.angles)
-    return builder.unload(leg).move_legs(name, only, target, landed=landed, margin=margin)
+    target, name = builder.angles.copy(), f"{verb} {builder.robot.leg_codes[leg]}"
+    target[leg] = angles
+    return builder.unload(leg).move_legs(name, target, landed=landed, margin=margin)
 
 
 def _footholds(

@@ -12,8 +12,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from tarsus.control.sequence.stage import GRID
-from tarsus.control.startup.body_targets import BodyTarget, stage_to
-from tarsus.control.startup.builder import GROUND_TOLERANCE, SequenceBuilder, body_contacts
+from tarsus.control.startup.body_targets import stage_to
+from tarsus.control.startup.builder import GROUND_TOLERANCE, BodyTarget, SequenceBuilder
 from tarsus.control.startup.checks import limit_excess
 from tarsus.control.startup.foothold_search import place_feet
 from tarsus.kinematics.folded_pose import folded_pose
@@ -60,12 +60,12 @@ def level_body(builder: SequenceBuilder, target: BodyTarget, stance: Float[np.nd
     if target.belly and not blocking.any():
         near_ground = free & _can_follow(builder, target) & (builder.feet[:, 2] < _NEAR_GROUND)
         free = free & ~near_ground
-        builder = builder.move_legs("retract free legs", free, folded_pose(builder.robot), landed=False)
+        folded = np.where(free[:, None], folded_pose(builder.robot), builder.angles)
+        builder = builder.move_legs("retract free legs", folded, landed=False)
     else:
         builder = place_feet(builder, target, stance, free=free, blocking=blocking)
-    supports = body_contacts(builder.robot, builder.body) if target.belly else None
     name = "lie down" if target.belly else "level body"
-    builder = builder.move_body(name, target.body, pivot=target.pivot, supports=supports, stationary=near_ground)
+    builder = builder.move_body(name, target, builder.contacts | near_ground)
     return builder.lie_down() if target.belly else builder
 
 

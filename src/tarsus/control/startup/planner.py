@@ -11,8 +11,8 @@ import numpy as np
 
 from tarsus.arrays import Array
 from tarsus.control.sequence.sequence import MotionSequence
-from tarsus.control.startup.body_targets import BodyTarget, body_targets
-from tarsus.control.startup.builder import SequenceBuilder
+from tarsus.control.startup.body_targets import body_targets
+from tarsus.control.startup.builder import BodyTarget, SequenceBuilder
 from tarsus.control.startup.initial_state import SERVO_SPEED_SHARE, initial_state, lying_state, over_feet, uneven_state
 from tarsus.control.startup.level_body import level_body
 from tarsus.control.startup.raise_body import lower_body, raise_body
@@ -107,7 +107,7 @@ def stand_up(
 
     def plan(target: BodyTarget) -> SequenceBuilder:
         level = level_body(start, target, feet)
-        return raise_body(_folded(level, folded) if level.belly else level, feet, stance)
+        return raise_body(level.move_legs("fold", folded, landed=False) if level.belly else level, feet, stance)
 
     return _first_feasible(robot, body_targets(start, height), plan)
 
@@ -202,7 +202,7 @@ def fold(
     """
     limits = joint_limits(robot, joint_speed, joint_acceleration, share=SERVO_SPEED_SHARE)
     lying = lying_state(over_feet(robot), angles, limits, purpose="folding its legs")
-    return _folded(lying, folded_pose(robot)).sequence(robot)
+    return lying.move_legs("fold", folded_pose(robot), landed=False).sequence(robot)
 
 
 def _checked(robot: Robot, swing_height: float | None, margin: float) -> tuple[float, float]:
@@ -238,8 +238,3 @@ def _lying(robot: Robot, start: SequenceBuilder) -> MotionSequence:
 
     lying_first = sorted(body_targets(start, start.height), key=lambda target: not target.belly)
     return _first_feasible(robot, lying_first, plan)
-
-
-def _folded(builder: SequenceBuilder, folded: Float[np.ndarray, "legs 3"]) -> SequenceBuilder:
-    """Fold all legs of a lying robot."""
-    return builder.move_legs("fold", (builder.angles != folded).any(-1), folded, landed=False)

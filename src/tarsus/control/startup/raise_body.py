@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from tarsus.control.startup.builder import SequenceBuilder
+from tarsus.control.startup.builder import BodyTarget, SequenceBuilder
 from tarsus.control.startup.foothold_change import change_footholds
 from tarsus.control.startup.foothold_stations import FootholdStation, foothold_stations
 from tarsus.errors import UnreachableError
@@ -62,7 +62,7 @@ def raise_body(
         exact = last and builder.height == height
         angles = stance if exact else inverse_kinematics(builder.robot, spots).require().angles
         if builder.belly:
-            builder = builder.move_legs("place feet", (builder.angles != angles).any(-1), angles, landed=True)
+            builder = builder.move_legs("place feet", angles, landed=True)
         else:
             builder = change_footholds(builder, angles)
         builder = _at_height(builder, next_height)
@@ -127,4 +127,5 @@ def _at_height(builder: SequenceBuilder, height: float) -> SequenceBuilder:
         return builder
     x, y, _ = builder.body.position
     name = "raise body" if height > builder.height else "lower body"
-    return builder.move_body(name, Pose(builder.body.rotation, np.array([x, y, height])))
+    target = BodyTarget(Pose(builder.body.rotation, np.array([x, y, height])), np.zeros(3), belly=False)
+    return builder.move_body(name, target, builder.contacts)
