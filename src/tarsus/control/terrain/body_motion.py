@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import cmath
 import math
-from typing import TYPE_CHECKING
 
 from tarsus.control.limitation import Limitation, LimitationKind
 from tarsus.control.limiter.stopped_body import StoppedBody
@@ -25,9 +24,6 @@ from tarsus.control.walk.state import PHASE_TOLERANCE, GaitState
 from tarsus.gait.stance.reachable_heights import reachable_share
 from tarsus.gait.stance.stance_geometry import SWING_HEIGHT
 from tarsus.robot.robot import Robot
-
-if TYPE_CHECKING:
-    pass
 
 __all__ = ["BodyMotion"]
 
