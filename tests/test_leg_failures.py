@@ -143,6 +143,7 @@ def test_a_leg_that_is_not_measured_is_no_fault_of_the_others_after_one_has_fail
         controller.step(
             (0.03, 0.0, 0.0), 0.01, tarsus.SensorReadings(joint_angles=angles, contacts=[True] * 4 + [None, True])
         )
+    controller.step((0.03, 0.0, 0.0), 0.01, tarsus.SensorReadings(contacts=[True] * 6))
     assert controller.leg_failures.failed == {1: 2}
     assert controller.output.twist[0] > 0.02
 

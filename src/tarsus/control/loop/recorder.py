@@ -82,11 +82,10 @@ class Recorder:
         """
         if command is self._command:
             return
-        for since, _, last, limitation in self._present.values():
-            if last > self.time - _GAP:
-                new, old = (_part(each, limitation.kind) for each in (command, self._command))
-                if new is not None and new != old:
-                    self._note_unmet(since, limitation)
+        for since, _, _, limitation in self._present.values():
+            new, old = (_part(each, limitation.kind) for each in (command, self._command))
+            if new is not None and new != old:
+                self._note_unmet(since, limitation)
         self._command = command
 
     def _note_unmet(self, since: float, limitation: Limitation) -> None:
