@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from contextlib import suppress
 from typing import TYPE_CHECKING, Any, TypeVar
 
@@ -11,7 +11,7 @@ import numpy as np
 
 from tarsus.control.command import Command
 from tarsus.control.limitation import Limitation, LimitationKind
-from tarsus.control.readings import CHANNELS, SensorReadings
+from tarsus.control.readings import CHANNELS, SensorReadings, Vector
 from tarsus.control.sensing.joint_monitor import JointMonitor
 from tarsus.control.sensing.plain_values import as_items, as_vector
 from tarsus.control.states.activity import Snapshot, Walking
@@ -122,8 +122,7 @@ class ReducedWalking(Walking):
         super().step(command, dt, None if readings is None else self._of_legs(readings))
         angles, torques, contacts = self.measured.joint_angles, self.measured.torques, self.measured.contacts
         if angles is not None:
-            zero = self._zero[:, 0].tolist()
-            angles = tuple(each and (each[0] + of_coxa, *each[1:]) for each, of_coxa in zip(angles, zero, strict=True))
+            angles = _turned(angles, self._zero[:, 0])
         self.measured = self.measured._replace(
             joint_angles=self._of_all(angles), torques=self._of_all(torques), contacts=self._of_all(contacts)
         )
@@ -173,12 +172,14 @@ class ReducedWalking(Walking):
             if items is not None:
                 values[name] = [items[leg] for leg in self._legs]
         if "joint_angles" in values:
-            vectors = map(as_vector, values["joint_angles"])
-            values["joint_angles"] = [
-                vector and (vector[0] - zero, *vector[1:])
-                for vector, zero in zip(vectors, self._zero[:, 0].tolist(), strict=True)
-            ]
+            values["joint_angles"] = _turned(map(as_vector, values["joint_angles"]), -self._zero[:, 0])
         return dataclasses.replace(readings, **values)
+
+
+def _turned(legs: Iterable[Vector | None], coxae: Float[np.ndarray, "legs"]) -> tuple[Vector | None, ...]:
+    """Return joint angles with the coxae turned further; None for legs of which nothing is known."""
+    pairs = zip(legs, coxae.tolist(), strict=True)
+    return tuple(angles and (angles[0] + coxa, *angles[1:]) for angles, coxa in pairs)
 
 
 def _fastest_walk(robot: Robot, **options: Any) -> WalkController:
