@@ -56,6 +56,17 @@ def test_a_text_is_no_number(name, made):
         made()
 
 
+def test_a_number_that_is_written_as_text_is_that_number():
+    found = Admittance(mass="1", damping="400", stiffness="400", travel="0.01")
+    assert found == Admittance(mass=1, damping=400, stiffness=400, travel=0.01)
+    assert tarsus.GroundAdaptation(cycle_time="1.2", speed="0.5") == tarsus.GroundAdaptation(cycle_time=1.2, speed=0.5)
+    walks = [tarsus.WalkController(STRIDER, stance_width=width, cycle_time=1.2) for width in ("0.01", 0.01)]
+    assert (walks[0].angles == walks[1].angles).all()
+    assert tarsus.WalkController(STRIDER, cycle_time="1.2").cycle_time == walks[0].cycle_time
+    commands = {"duration": 0.05, "jitter": "0.001"}
+    assert len(tarsus.run(tarsus.RobotController(STRIDER), tarsus.IdealPlant(STRIDER), [], **commands).states) == 6
+
+
 def test_a_plant_takes_angles_of_all_its_legs():
     plant = SimulatedPlant(STRIDER, servos="ideal")
     plant.start(tarsus.RobotController(STRIDER).output)

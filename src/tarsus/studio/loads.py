@@ -22,8 +22,8 @@ __all__ = ["loads_message", "loads_of", "servos_message"]
 
 _MOST_SIZED = 3000
 _VERTICAL = (
-    "contact forces are vertical; feet that press against each other through friction load mainly the coxae more: "
-    "tarsus loads adds it"
+    "contact forces are vertical; tarsus loads adds those with which feet press against each other through friction, "
+    "which load mainly the coxae"
 )
 
 

@@ -131,7 +131,8 @@ def run(
             f"{controller.robot.name!r} with {controller.robot.legs}; both must be the same robot"
         )
     rate = require_number("rate", rate, zero=False)
-    if require_number("jitter", jitter, zero=True) >= 1 / rate:
+    jitter = require_number("jitter", jitter, zero=True)
+    if jitter >= 1 / rate:
         raise InputError(f"jitter is {jitter:g} s; it must be at least 0 and less than a tick, {1 / rate:g} s")
     source = commands if isinstance(commands, CommandSource) else TimedCommands(commands, duration=duration)
     recorder, random = Recorder(controller), np.random.default_rng(seed)

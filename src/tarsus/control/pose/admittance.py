@@ -52,7 +52,7 @@ class Admittance:
 
     def __post_init__(self) -> None:
         for name in ("mass", "damping", "stiffness", "travel"):
-            require_number(f"admittance: {name}", getattr(self, name), zero=False)
+            object.__setattr__(self, name, require_number(f"admittance: {name}", getattr(self, name), zero=False))
         for name, rate in (("stiffness", self.frequency), ("damping", self.decay)):
             if not rate < _FASTEST:
                 raise InputError(

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 
 from tarsus.errors import InputError
 from tarsus.gait.walk_setup import require_number
@@ -67,11 +67,12 @@ class GroundAdaptation:
     friction: float = 0.8
 
     def __post_init__(self) -> None:
-        for name in ("swing_height", "body_height", "drawn_in", "friction"):
-            require_number(f"ground adaptation: {name}", getattr(self, name), zero=True)
-        require_number("ground adaptation: speed", self.speed, zero=False, most=1.0)
+        for name in (field.name for field in fields(self)):
+            what, value, is_speed = f"ground adaptation: {name}", getattr(self, name), name == "speed"
+            number = require_number(what, value, zero=not is_speed, most=1.0 if is_speed else math.inf)
+            object.__setattr__(self, name, number)
         for name in ("cycle_time", "catch_up"):
-            if require_number(f"ground adaptation: {name}", getattr(self, name), zero=False) < 1:
+            if getattr(self, name) < 1:
                 raise InputError(f"ground adaptation: {name} is {getattr(self, name)}; it must be finite, at least 1")
 
 

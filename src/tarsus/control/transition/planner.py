@@ -82,10 +82,11 @@ class TransitionPlanner:
         UnreachableError
             If the robot can't stand and step so.
         """
-        if not math.isfinite(require_float("stance_width", stance_width)):
+        stance_width = require_float("stance_width", stance_width)
+        if not math.isfinite(stance_width):
             raise InputError(f"stance_width is {stance_width} m; it must be a finite number")
         if cycle_time is not None:
-            require_number("cycle_time", cycle_time, zero=False)
+            cycle_time = require_number("cycle_time", cycle_time, zero=False)
         parameters = WalkParameters(
             gait=setup.gait,
             body=(0.0,) * 6,
