@@ -144,6 +144,8 @@ class MissingGround:
         for leg in [leg for leg in self.places if leg not in searching or leg in past]:
             self._drop(leg)
             self._tries[leg] = 0
+        # A robot that has tipped goes back until it is held well.
+        well = self._scale * _MARGIN * self.tips
         self.pace, self.back, self.tips, self._slows, self.edge = 1.0 - self.refuses, 0j, 0j, "", 0.0
         if self.lost is not None:
             self._tip(feet[self.lost] / abs(feet[self.lost]))
@@ -152,7 +154,7 @@ class MissingGround:
         slows, deep = deeper + self._scale * _SLOWS, deeper + self._scale * _STANDS
         sure, standing = deeper <= self._scale * _SURE, [foot for foot, on in zip(feet, stands, strict=True) if on]
         # A robot none of whose feet stands is being lifted.
-        held = not (searches and standing) or holds(standing, centre)
+        held = not (searches and standing) or holds(standing, centre + well)
         for search in searches:
             leg, depth, falls, lasts, _, raised, leans = search
             way = self._to_edge(feet[leg], rest[leg])
@@ -246,7 +248,10 @@ class MissingGround:
         velocity *= abs(velocity) > _MOVES
         if self._left and self._since < _FORGETS and (not velocity or leads_towards(-velocity, self._left)):
             return self._left
-        return velocity / abs(velocity) if velocity else _way(foot - rest, rest)
+        if velocity:
+            return velocity / abs(velocity)
+        # A foot that has stepped back from an edge is on the other side of its rest foothold.
+        return self._way if leads_towards(rest, self._way) else _way(foot - rest, rest)
 
     def limit(self, request: TwistRequest, grant: TwistGrant) -> TwistGrant:
         """Return the grant, without a twist that leads over the edge; one that leads away is granted from then on."""
