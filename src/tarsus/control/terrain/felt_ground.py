@@ -153,7 +153,8 @@ class FeltGround:
         state, standing, timing, footholds = tick.gait, tick.standing, transitions.timing, transitions.footholds
         kept, before, self._idle = self._inputs, self._given, self._idle + dt
         self._still = not any(tick.twist.tolist()) or (self.body.slope.refuses and self.support.halts)
-        self._given, self._rests = (excluded, standing), self._still and not self.missing.refuses
+        self._given = (excluded, standing)
+        self._rests = self._still and not (self.missing.refuses or self.missing.places)
         if kept and self._given == before and (standing or not self._next_lift.is_due(timing, state, dt)):
             self._inputs = kept = kept.moved_by(self.body.rates.climb, self.body.rates.turn)
             return kept
@@ -221,7 +222,7 @@ class FeltGround:
             self.ground.plane = FootPlane()
         held = [self.condition.in_air or on for on in contacts.standing]
         stands = [on and not missing.steps_back(leg, footing.places[leg]) for leg, on in enumerate(held)]
-        missing.sees(self.ground.holes, footholds.rest.tolist())
+        missing.sees(self.ground, footholds.rest.tolist())
         waits = self.condition.carried or (self._rests and self.support.held and near == footing.down)
         searches = [] if waits else self._searches(state, footing, stands)
         missing.lost = contacts.tips(footing, missing.sinks(deeper))

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from functools import partial
 
 from tarsus.control.limitation import Limitation, LimitationKind
 from tarsus.control.limiter.protocol import TwistGrant, TwistRequest, leads_towards
 from tarsus.control.terrain.foot_contacts import Search
+from tarsus.control.terrain.ground_map import GroundMap
 from tarsus.control.terrain.obstacles import Obstacles
 from tarsus.control.terrain.support import Footing, holds
 from tarsus.control.transition.foothold_transfer import FootholdTransfer
@@ -88,6 +89,8 @@ class MissingGround:
         # How long feet that hang have been held up by their legs [s].
         self._held = dict[int, float]()
         self._way, self._left, self._backed, self._again, self._since, self._slows = 0j, 0j, 0.0, 0, 0.0, ""
+        # Whether a robot that is to stop would put feet down into a hole that is seen.
+        self._stops, self._over = False, False
         # The twist before any foot searched, by which it has met the edge.
         self.twist: Sequence[float] = (0.0, 0.0, 0.0)
         self._walked: Sequence[float] = self.twist
@@ -165,7 +168,7 @@ class MissingGround:
             held_up = raised > _HELD_UP and depth - raised < max(_STEP * height, self._scale * _LOW_STEP)
             self._held[leg] = (before.get(leg, 0.0) + dt) * (held_up and not falls)
             long = not lasts or self._held[leg] > _HELD
-            hangs = not falls and depth > deep if leg in self.places else long
+            hangs = not falls and (depth > deep or not lasts) if leg in self.places else long
             missing = depth - max(raised, 0.0) > _DEEP * height + _ROUGHLY_DEEP * deeper or hangs
             missing &= abs(leans) < max(self._scale * _LEANS, deeper)
             if _tips(search, deep, held=held):
@@ -181,8 +184,9 @@ class MissingGround:
         speed, backed = self._scale * _SPEED, self._backed < self._scale * _BACKS
         if not self.places:
             # A robot that tips where a foot sinks goes back at once.
-            self.back = -speed * self.tips * backed
-            self._backed = (self._backed + speed * dt) * bool(self.tips)
+            way = self.tips or self._way * self._over
+            self.back = -speed * way * backed
+            self._backed = (self._backed + speed * dt) * bool(way)
             if self.refuses and self._again < _AGAIN and self._since > _WAITS:
                 self._again += 1
                 self._leave()
@@ -231,9 +235,10 @@ class MissingGround:
             self._way, self._again = self.obstacles.found, max(self._again, _AGAIN - 1)
         return start - foot
 
-    def sees(self, holes: Mapping[int, complex], rest: Sequence[complex]) -> None:
-        """Take note of feet in the air that would be put down into a hole: where, and their rest footholds [m]."""
-        for leg, place in holes.items():
+    def sees(self, ground: GroundMap, rest: Sequence[complex]) -> None:
+        """Take note of feet in the air that would be put down into a hole, and of their rest footholds [m] in one."""
+        self._over = self._stops and any(leads_towards(at, self._way) and ground.is_hole(at) for at in rest)
+        for leg, place in ground.holes.items():
             self._way = _way(place - rest[leg], rest[leg])
             self._cause, self._again = (self._names[leg], "no ground within reach at its next foothold"), _AGAIN
 
@@ -249,14 +254,17 @@ class MissingGround:
         if self._left and self._since < _FORGETS and (not velocity or leads_towards(-velocity, self._left)):
             return self._left
         if velocity:
-            return velocity / abs(velocity)
+            way = velocity / abs(velocity)
+            # The edge at a foot behind the body on its way is one that the robot leaves.
+            return -way if leads_towards(rest, -way) else way
         # A foot that has stepped back from an edge is on the other side of its rest foothold.
         return self._way if leads_towards(rest, self._way) else _way(foot - rest, rest)
 
     def limit(self, request: TwistRequest, grant: TwistGrant) -> TwistGrant:
         """Return the grant, without a twist that leads over the edge; one that leads away is granted from then on."""
         velocity = complex(*request.twist[:2])
-        self.refuses = leads_towards(velocity, self._way)
+        self._stops = not any(request.twist)
+        self.refuses = leads_towards(velocity, self._way) or (self._stops and self._over)
         self.stranded = [leg for leg in self.places if self.gives_up(leg) and any(request.twist) and not self.refuses]
         if self.refuses:
             name, cause = self._cause
