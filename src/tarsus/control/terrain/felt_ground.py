@@ -135,7 +135,8 @@ class FeltGround:
             state = timing.with_first_lift(state, self.missing.stranded[0])
         pace = self.support.pace
         state, landed = met_ground(state, self.body, self.missing, stopped=stopped, timing=timing, pace=pace)
-        if self.missing.tips or self.condition.in_air:
+        waits = self.missing.refuses and self.support.halts
+        if self.missing.tips or self.condition.in_air or waits:
             state, swung = put_down(state, timing=timing, pace=pace)
             landed += swung
         return state, landed

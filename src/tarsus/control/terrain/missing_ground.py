@@ -89,8 +89,8 @@ class MissingGround:
         # How long feet that hang have been held up by their legs [s].
         self._held = dict[int, float]()
         self._way, self._left, self._backed, self._again, self._since, self._slows = 0j, 0j, 0.0, 0, 0.0, ""
-        # Whether a robot that is to stop would put feet down into a hole that is seen.
-        self._stops, self._over = False, False
+        # Whether the robot is to stop, and whether rest footholds are over the hole that it has met.
+        self._stops, self._over = True, False
         # The twist before any foot searched, by which it has met the edge.
         self.twist: Sequence[float] = (0.0, 0.0, 0.0)
         self._walked: Sequence[float] = self.twist
@@ -184,10 +184,10 @@ class MissingGround:
         speed, backed = self._scale * _SPEED, self._backed < self._scale * _BACKS
         if not self.places:
             # A robot that tips where a foot sinks goes back at once.
-            way = self.tips or self._way * self._over
+            way = self.tips or self._way * (self._stops and self._over)
             self.back = -speed * way * backed
             self._backed = (self._backed + speed * dt) * bool(way)
-            if self.refuses and self._again < _AGAIN and self._since > _WAITS:
+            if self.refuses and not self._stops and self._again < _AGAIN and self._since > _WAITS:
                 self._again += 1
                 self._leave()
             elif not self.refuses and self._since > _FORGETS:
@@ -237,7 +237,7 @@ class MissingGround:
 
     def sees(self, ground: GroundMap, rest: Sequence[complex]) -> None:
         """Take note of feet in the air that would be put down into a hole, and of their rest footholds [m] in one."""
-        self._over = self._stops and any(leads_towards(at, self._way) and ground.is_hole(at) for at in rest)
+        self._over = any(leads_towards(at, self._way) and ground.is_hole(at) for at in rest)
         for leg, place in ground.holes.items():
             self._way = _way(place - rest[leg], rest[leg])
             self._cause, self._again = (self._names[leg], "no ground within reach at its next foothold"), _AGAIN
