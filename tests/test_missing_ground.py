@@ -50,6 +50,10 @@ def stepped(
     return missing
 
 
+def seen(missing, holes, edge=1.0):
+    missing.sees(SimpleNamespace(holes=holes, is_hole=lambda place: place.real > edge), REST)
+
+
 def limited(missing, *twist):
     request = TwistRequest(twist, 0.01, None, np.zeros(3))
     return missing.limit(request, TwistGrant())
@@ -121,7 +125,7 @@ def test_a_foot_without_ground_steps_back_then_the_body_backs_off_and_then_the_f
     second = stepped(missing, [(0, 0.08, True, True)], [first, *REST[1:]]).places[0]
     assert second.real < first.real
     assert not missing.gives_up(0)
-    stepped(missing, [(0, 0.01, False, False)], [second, *REST[1:]], centre=-0.1 + 0j)
+    stepped(missing, [(0, 0.01, False, True)], [second, *REST[1:]], centre=-0.1 + 0j)
     assert not missing.gives_up(0)
     # Though the others hold it, the body backs off, by which the foot gets back to where it has stood.
     assert missing.back == 0
@@ -140,7 +144,14 @@ def test_a_foot_that_hangs_at_the_end_of_its_reach_at_another_place_steps_on():
     first = missing.places[0]
     # On its way down it looks further.
     assert stepped(missing, [(0, 0.06, True, False)], [first, *REST[1:]]).places[0] == first
-    assert stepped(missing, [(0, 0.06, False, False)], [first, *REST[1:]]).places[0].real < first.real
+    second = stepped(missing, [(0, 0.06, False, False)], [first, *REST[1:]]).places[0]
+    assert second.real < first.real
+    # Seen ground below it that the leg does not reach keeps it there for no longer than a search.
+    assert stepped(missing, [(0, -0.03, False, True)], [second, *REST[1:]]).places[0] == second
+    assert not missing.gives_up(0)
+    stepped(missing, [(0, -0.03, False, False)], [second, *REST[1:]])
+    stepped(missing, [(0, -0.03, False, False)], [missing.places[0], *REST[1:]])
+    assert missing.gives_up(0)
 
 
 def test_a_foot_at_its_rest_foothold_steps_inwards():
@@ -369,8 +380,8 @@ def test_a_foot_that_has_got_past_an_obstacle_looks_for_the_ground_like_any_othe
 
 def test_a_twist_into_a_hole_that_is_seen_is_refused_before_a_foot_is_over_it():
     missing = MissingGround(NAMES)
-    missing.sees({0: AHEAD[0], 5: REST[5]}, REST)
-    missing.sees({0: AHEAD[0]}, REST)
+    seen(missing, {0: AHEAD[0], 5: REST[5]})
+    seen(missing, {0: AHEAD[0]})
     refused = limited(missing, 0.1, 0.0, 0.0)
     assert refused.fraction == 0.0
     assert refused.limitations[0].text() == "ground: LF: no ground within reach at its next foothold"
@@ -380,6 +391,42 @@ def test_a_twist_into_a_hole_that_is_seen_is_refused_before_a_foot_is_over_it():
         assert limited(missing, 0.1, 0.0, 0.0).fraction == 0.0
     for away in ((-0.1, 0.0, 0.0), (0.1, 0.0, 0.0)):
         assert limited(missing, *away).fraction == 1.0
+
+
+def test_a_body_that_stops_with_rest_footholds_over_a_hole_backs_off_until_they_are_not():
+    missing = MissingGround(NAMES)
+    seen(missing, {0: AHEAD[0]})
+    for twist, edge, refused, backs in ((0.1, 0.1, True, False), (0.0, 0.1, True, True), (0.0, 0.3, False, False)):
+        seen(missing, {}, edge=edge)
+        assert (limited(missing, twist, 0.0, 0.0).fraction == 0.0) == refused
+        assert (stepped(missing, [], REST, stands=[True] * 6).back.real < 0) == backs
+    # No farther than it may, and away from there at once.
+    seen(missing, {}, edge=0.1)
+    ticks = [stepped(missing, [], REST, stands=[True] * 6).back.real for _ in range(200)]
+    assert 0.05 < -0.01 * sum(ticks) < 0.1
+    assert ticks[-1] == 0
+    assert limited(missing, 0.0, 0.0, 0.0).fraction == 0.0
+    assert limited(missing, -0.1, 0.0, 0.0).fraction == 1.0
+
+
+def test_a_robot_that_tips_goes_back_until_its_feet_hold_it_well():
+    def back(centre):
+        stands, search = [False, *[True] * 4, False], [(0, 0.03, True, True)]
+        missing = stepped(MissingGround(NAMES), search, stands=stands, centre=0.1 + 0j)
+        assert missing.back.real < 0
+        return stepped(missing, search, stands=stands, centre=centre).back.real
+
+    assert back(-0.01 + 0j) < 0
+    assert back(-0.05 + 0j) == 0
+
+
+def test_a_foot_behind_the_body_that_loses_its_ground_has_met_an_edge_that_the_robot_leaves():
+    for twist, leg, way in (((0.1, 0.0, 0.0), 0, 1), ((0.1, 0.0, 0.0), 2, -1), ((0.1, 0.0, 0.0), 1, 1)):
+        missing = stepped(MissingGround(NAMES), [], REST, stands=[True] * 6, twist=twist)
+        stands = [other != leg for other in range(6)]
+        place = stepped(missing, [(leg, 0.08, True, True)], REST, stands=stands).places[leg]
+        assert (place - REST[leg]).real * way < 0
+        assert (limited(missing, *twist).fraction == 0.0) == (way == 1)
 
 
 class Walk:
@@ -472,7 +519,7 @@ def test_a_robot_comes_back_whose_foot_has_found_no_ground_at_any_place_behind_a
     assert walk.named == {"front left"}
     assert walk.tilt < np.radians(3)
     # Its middle comes 0.1 m back while the foot still looks for ground behind the edge; then it walks away.
-    assert walk.go(-0.26, 5.0) < stopped - 0.3
+    assert walk.go(-0.26, 6.0) < stopped - 0.3
 
 
 @pytest.mark.no_cover
@@ -485,6 +532,17 @@ def test_a_robot_that_sees_a_hole_stops_before_it_and_walks_away():
     assert walk.go(0.13, 1.0) == pytest.approx(stopped, abs=0.02)
     assert walk.tilt < np.radians(3)
     assert walk.go(-0.13, 2.0) < stopped - 0.1
+
+
+@pytest.mark.parametrize(("start", "pace"), [(0.31, 0.13), (0.41, 0.065), (0.49, 0.065)])
+def test_a_robot_that_stops_at_a_hole_that_it_sees_rests_and_comes_back(start, pace):
+    walk = Walk(terrain.Gaps(start=start, width=0.2, depth=0.15, count=1), sensors="camera")
+    walk.go(pace, 8.0)
+    walk.go(0.0, 3.0)
+    rested = walk.go(0.0, 1.0)
+    assert walk.go(0.0, 1.0) == pytest.approx(rested, abs=0.002)
+    assert walk.go(-pace, 4.0) < rested - 0.1
+    assert walk.tilt < np.radians(6)
 
 
 @pytest.mark.no_cover
@@ -509,7 +567,7 @@ def test_a_foot_that_loses_its_ground_while_it_is_moved_has_met_the_edge_on_its_
     assert (stepped(missing, [(0, 0.03, True, True)], feet, stands=two).back / way).real < 0
 
 
-@pytest.mark.parametrize(("waits", "speed", "way"), [(10, -0.1, 1), (10, 0.0, 1), (10, 0.1, 1), (610, -0.1, -1)])
+@pytest.mark.parametrize(("waits", "speed", "way"), [(10, -0.1, 1), (10, 0.0, 1), (10, 0.1, 1), (610, -0.1, 1)])
 def test_a_foot_that_loses_its_ground_on_the_way_back_from_an_edge_has_met_that_edge(waits, speed, way):
     missing, behind = stepped(MissingGround(NAMES), [(0, 0.08, True, True)]), [REST[0] - 0.04, *REST[1:]]
     stepped(missing, [], stands=[True] * 6)
