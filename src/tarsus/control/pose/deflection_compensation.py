@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import cmath
 import math
+from collections.abc import Sequence
+from operator import mul
 from typing import TYPE_CHECKING, TypeAlias
 
 import numpy as np
@@ -22,6 +24,8 @@ __all__ = ["DeflectionCompensation"]
 _Arms: TypeAlias = tuple[float, float, float, float]
 # How fast the softness is learnt [1/s].
 _LEARNING_RATE = 2.0
+# How often it is looked where the feet are, and how soft the joints [s].
+_PERIOD = 0.035
 # Sum of squares of the femurs' deflections from which on they tell the softness [rad^2].
 _LEAST = 1e-5
 # Share of the deflection that is added: measured forces rise with it.
@@ -57,6 +61,11 @@ class DeflectionCompensation:
     def __init__(self, robot: Robot) -> None:
         self.offsets: Float[np.ndarray, "legs 3"] | None = None
         self.lowered = self.softness = self._share = self._needed = 0.0
+        # Time since it was looked where the feet are [s]; joint angles, lever arms and feet in B then; by a load of 1 N
+        # on each foot, the turns of its joints [rad], and how far it sinks [m].
+        self._since, self._joints, self._arms = _PERIOD, list[list[float]](), list[_Arms]()
+        self._feet, self._sinks = list[tuple[float, float]](), list[float]()
+        self._turns: Float[np.ndarray, "legs 3"] = np.zeros((robot.legs, 3))
         self._loads, self._legs = VerticalLoads(robot), list[tuple[float, ...]]()
         if all(all(leg) for leg in robot.servos):
             yields, g = (1 / JointSprings.of(robot).stiffness[:, 1:]).T, robot.geometry
@@ -87,50 +96,54 @@ class DeflectionCompensation:
             self._needed = self._needed or self._needed_friction(angles)
             if self._needed + slope < _FRICTION:
                 return
-        wanted = _SHARE if self._needed + slope >= _FRICTION else 0.0
-        self._share += min(_LEARNING_RATE * dt, 1.0) * (wanted - self._share)
-        joints, share = angles.tolist(), self._share * self.softness
-        arms = [_lever_arms(*leg[4:6], *turns[1:]) for leg, turns in zip(self._legs, joints, strict=True)]
-        loads = self._loads.step(valid, bears, dt, feet=self._feet(joints, arms), joints=joints)
-        offsets, lowered, femurs = list[tuple[float, float, float]](), 0.0, list[float]()
-        for (*_, femur_yields, tibia_yields), (to_knee, _, to_hip, _), load in zip(
-            self._legs, arms, loads, strict=True
-        ):
-            turned, bent = femur_yields * to_hip * load, tibia_yields * to_knee * load
-            lowered = max(lowered, share * (turned * to_hip + bent * to_knee))
-            offsets.append((0.0, -share * turned, -share * bent))
-            femurs.append(turned)
-        self._learn(valid, joints, arms, femurs, dt)
+        self._since += dt
+        looks = self._since >= _PERIOD
+        if looks:
+            self._find_feet(angles.tolist())
+        loads = self._loads.step(valid, bears, dt, feet=self._feet, angles=angles)
+        if looks:
+            wanted = _SHARE if self._needed + slope >= _FRICTION else 0.0
+            self._share += min(_LEARNING_RATE * self._since, 1.0) * (wanted - self._share)
+            self._learn(valid, loads)
+            self._since = 0.0
+        share = self._share * self.softness
+        self.offsets = np.array(loads)[:, None] * (-share * self._turns)
+        lowered = share * max(map(mul, self._sinks, loads))
         self.lowered += min(_LEARNING_RATE * dt, 1.0) * (lowered - self.lowered)
-        self.offsets = np.array(offsets)
 
-    def _learn(
-        self, valid: ValidReadings, joints: list[list[float]], arms: list[_Arms], turned: list[float], dt: float
-    ) -> None:
+    def _find_feet(self, joints: list[list[float]]) -> None:
+        """Find where the feet are, and what a load of 1 N on each turns its joints by."""
+        self._joints, self._feet, self._sinks = joints, [], []
+        turns: list[tuple[float, float, float]] = []
+        self._arms = [_lever_arms(*leg[4:6], *turns[1:]) for leg, turns in zip(self._legs, joints, strict=True)]
+        for leg, (coxa, *_), (to_knee, _, to_hip, _) in zip(self._legs, joints, self._arms, strict=True):
+            x, y, yaw, length, _, _, femur_yields, tibia_yields = leg
+            out = cmath.rect(length + to_hip, yaw + coxa)
+            self._feet.append((x + out.real, y + out.imag))
+            turned, bent = femur_yields * to_hip, tibia_yields * to_knee
+            self._sinks.append(turned * to_hip + bent * to_knee)
+            turns.append((0.0, turned, bent))
+        self._turns = np.array(turns)
+
+    def _learn(self, valid: ValidReadings, loads: Sequence[float]) -> None:
         """Learn the softness: how far the femurs have turned, over how far the servos of the file would be bent."""
         product = square = 0.0
         for leg, angles in enumerate(valid.joint_angles or ()):
             force = valid.forces[leg] if valid.forces else None
             if not angles or (valid.forces and not force):
                 continue
-            (coxa, femur, _), bends = joints[leg], turned[leg]
+            (coxa, femur, _), (_, _, to_hip, below_hip) = self._joints[leg], self._arms[leg]
+            bends = to_hip * loads[leg]
             if force:
                 # The torque that bends the femur is that of the whole force: feet lean against each other.
-                _, _, yaw, _, _, _, femur_yields, _ = self._legs[leg]
-                out = force[0] * math.cos(yaw + coxa) + force[1] * math.sin(yaw + coxa)
-                bends = femur_yields * (arms[leg][2] * force[2] + arms[leg][3] * out)
+                heading = self._legs[leg][2] + coxa
+                out = force[0] * math.cos(heading) + force[1] * math.sin(heading)
+                bends = to_hip * force[2] + below_hip * out
+            bends *= self._legs[leg][6]
             product, square = product + bends * (angles[1] - femur), square + bends * bends
         if square > _LEAST:
-            learnt = self.softness + min(_LEARNING_RATE * dt, 1.0) * (product / square - self.softness)
+            learnt = self.softness + min(_LEARNING_RATE * self._since, 1.0) * (product / square - self.softness)
             self.softness = min(max(learnt, 0.0), 1.0)
-
-    def _feet(self, joints: list[list[float]], arms: list[_Arms]) -> list[tuple[float, float]]:
-        """Return where the feet are in B, x and y [m]."""
-        feet: list[tuple[float, float]] = []
-        for (x, y, yaw, length, *_), (coxa, *_), (_, _, to_hip, _) in zip(self._legs, joints, arms, strict=True):
-            out = cmath.rect(length + to_hip, yaw + coxa)
-            feet.append((x + out.real, y + out.imag))
-        return feet
 
     def _needed_friction(self, commanded: Float[np.ndarray, "legs 3"]) -> float:
         """Return which friction keeps all feet in place under vertical loads: horizontal over vertical force."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from typing import TypeAlias
+from typing import TYPE_CHECKING, TypeAlias
 
 import numpy as np
 
@@ -11,6 +11,9 @@ from tarsus.control.readings import ValidReadings
 from tarsus.kinematics.mass import centre_of_mass, known_weight
 from tarsus.load.foot_force import balanced_forces
 from tarsus.robot.robot import Robot
+
+if TYPE_CHECKING:
+    from jaxtyping import Float
 
 __all__ = ["Bears", "VerticalLoads"]
 
@@ -53,7 +56,7 @@ class VerticalLoads:
         dt: float,
         *,
         feet: Sequence[Sequence[float]],
-        joints: Sequence[Sequence[float]],
+        angles: Float[np.ndarray, "legs 3"],
     ) -> tuple[float, ...]:
         """Return the loads of the feet; they follow what is measured, and go back to 0 where it is not any more [N].
 
@@ -67,15 +70,16 @@ class VerticalLoads:
             Time since the last tick [s].
         feet : sequence of (x, y)
             The feet in B [m].
-        joints : sequence of (coxa, femur, tibia)
+        angles : array, shape (legs, 3)
             Joint angles [rad].
         """
         if valid.forces is not None:
             measured = [max(force[2], 0.0) if force else 0.0 for force in valid.forces]
         else:
             measured = [self._weight / _FEWEST * on for on in bears()]
-        angles = valid.joint_angles or (None,) * len(feet)
-        measured = [load if known else 0.0 for load, known in zip(measured, angles, strict=True)]
+        if valid.joint_angles is None or None in valid.joint_angles:
+            known = valid.joint_angles or (None,) * len(feet)
+            measured = [load if of_leg else 0.0 for load, of_leg in zip(measured, known, strict=True)]
         follows = min(_RATE * dt, 1.0)
         self._loads = [load + follows * (new - load) for load, new in zip(self._loads, measured, strict=True)]
         total = sum(self._loads)
@@ -83,13 +87,13 @@ class VerticalLoads:
             return (0.0,) * len(feet)
         bear = [min(load / (_BEARS * total), 1.0) for load in self._loads]
         if valid.forces is None:
-            return balanced_forces(feet, bear, self._centre_of(joints), min(total, self._weight))
+            return balanced_forces(feet, bear, self._centre_of(angles), min(total, self._weight))
         loaded = list(zip(self._loads, feet, strict=True))
         centre = [sum(load * foot[axis] for load, foot in loaded) / total for axis in (0, 1)]
         return balanced_forces(feet, bear, centre, total)
 
-    def _centre_of(self, joints: Sequence[Sequence[float]]) -> list[float]:
+    def _centre_of(self, angles: Float[np.ndarray, "legs 3"]) -> list[float]:
         """Return the centre of mass, as it was when it was first of use: it moves little in B."""
         if self._centre is None:
-            self._centre = centre_of_mass(self._robot, np.array(joints))[:2].tolist()
+            self._centre = centre_of_mass(self._robot, angles)[:2].tolist()
         return self._centre
