@@ -846,3 +846,14 @@ def test_a_foot_that_has_just_lifted_off_may_touch_the_ground_still_and_not_agai
     # A foot that has left the ground meets an obstacle.
     assert not contacts.as_planned(touching, down, phases)
     assert not contacts.as_planned(None, down, phases)
+
+
+@pytest.mark.parametrize("last", [4, 5, 6, 7])
+def test_a_contact_that_ceases_twice_as_a_foot_lifts_off_is_no_collision(last):
+    controller, since = WalkController(tarsus.load_robot("makeyourpet")), np.zeros(6, int)
+    for _ in range(200):
+        since = np.where(controller.contacts, 0, since + 1)
+        contacts = controller.contacts | ((since <= last) | (since == last + 2))
+        controller.step((0.1, 0.0, 0.0), 0.01, SensorReadings(contacts=contacts, attitude=(0.0, 0.0)))
+        assert all(foot.drawn_back is None for foot in controller._tick.gait.felt)
+    assert since.max() > last + 2

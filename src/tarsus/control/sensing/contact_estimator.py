@@ -77,3 +77,7 @@ class ContactEstimator:
             self._wrong, self._read = self._wrong / 2, self._read / 2
         self.certain = [abs(odds) >= _BOUND for odds in self._odds]
         self.error = min(self._wrong / self._read, _GREATEST_ERROR)
+
+    def reads(self, leg: int) -> bool:
+        """Return whether a foot bears load, more probably than not, and its last reading says so."""
+        return self.touching[leg] and self._last[leg][1]

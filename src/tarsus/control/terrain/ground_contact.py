@@ -58,7 +58,7 @@ def met_ground(
     turn = cmath.exp(-1j * state.yaw)
     places = ((state.foot - state.origin) * turn).tolist()
     for leg, (down, phase) in enumerate(zip(state.down.tolist(), state.swing_phase.tolist(), strict=True)):
-        foot, touches = state.felt[leg], contacts.estimator.touching[leg]
+        foot, meets = state.felt[leg], contacts.estimator.reads(leg) and contacts.lifted[leg]
         if down or phase <= _CLEAR:
             rises = foot.top > float(state.ground_height[leg]) or foot.slide
             if (contacts.feels(leg) or leg in stopped) and missing.tries(leg, places[leg]) and not rises:
@@ -85,7 +85,7 @@ def met_ground(
                     body.roughness.landed(min(off, max(off - sunk, 0.0)))
                 state = _landed(state, leg, timing, pace)
                 landed.append(leg)
-        elif ((touches and contacts.lifted[leg]) or leg in stopped) and not leaves and _collides(state, leg, contacts):
+        elif (meets or leg in stopped) and not leaves and _collides(state, leg, contacts):
             body.roughness.collided()
             state = _rising_again(state, leg, _highest(state, leg, reach), timing, scale=reach.scale)
     return state, landed
