@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 import tarsus
+from tarsus.control.readings import ValidReadings
 from tarsus.control.sensing.joint_monitor import JointMonitor
 from tarsus.control.states.reduced_walking import ReducedWalking
 from tarsus.errors import InputError
@@ -20,6 +21,11 @@ STRIDER = tarsus.load_robot("strider")
 DT = 0.02
 
 
+def look(monitor, commanded, measured, **others):
+    """Give a joint monitor what is measured in a tick of 10 ms."""
+    monitor.step(commanded, ValidReadings(joint_angles=measured, **others), 0.01)
+
+
 def swung(tick):
     """Joint angles that swing with half a radian."""
     return np.full((6, 3), 0.5 * np.sin(6 * 0.01 * tick))
@@ -30,7 +36,7 @@ def test_joints_that_lag_and_give_way_have_not_failed(lag):
     monitor = JointMonitor()
     for tick in range(400):
         measured = swung(tick - lag) - 0.1
-        monitor.step(swung(tick), measured.tolist(), 0.01)
+        look(monitor, swung(tick), measured.tolist())
     assert monitor.failed == {}
 
 
@@ -40,13 +46,13 @@ def test_a_joint_that_does_not_follow_is_found(fault):
     for tick in range(400):
         measured = swung(tick).tolist()
         measured[2][1] = -0.8 if fault == "limp" else 0.3
-        monitor.step(swung(tick), [None, *measured[1:]], 0.01)
+        look(monitor, swung(tick), [None, *measured[1:]])
         if monitor.failed:
             break
     assert monitor.failed == {2: 1}
     assert tick < (65 if fault == "limp" else 150)
     before = dict(monitor.failed)
-    monitor.step(swung(0), None, 0.01)
+    look(monitor, swung(0), None)
     assert monitor.failed == before
 
 
@@ -55,7 +61,7 @@ def test_a_joint_that_is_stuck_where_its_command_moves_little_is_found_too():
     for tick in range(250):
         measured = (0.2 * swung(tick - 5)).tolist()
         measured[4][0] = 0.02
-        monitor.step(0.2 * swung(tick), measured, 0.01)
+        look(monitor, 0.2 * swung(tick), measured)
     assert monitor.failed == {4: 0}
 
 
@@ -69,7 +75,7 @@ def test_measured_torques_tell_an_idle_servo_from_a_leg_that_is_caught(torque, a
     measured[leg, 1], torques[leg] = -0.45, (torque,) * 3
     ticks = 0
     while not monitor.failed:
-        monitor.step(np.zeros((6, 3)), measured.tolist(), 0.01, torques=torques)
+        look(monitor, np.zeros((6, 3)), measured.tolist(), torques=torques)
         ticks += 1
     assert monitor.failed == {leg: 1}
     assert after[0] < ticks < after[1]
@@ -84,7 +90,7 @@ def test_a_femur_that_gives_way_under_the_robot_is_found_before_it_tips(joint, e
     measured[3, joint] = error
     ticks = 0
     while not monitor.failed:
-        monitor.step(np.zeros((6, 3)), measured.tolist(), 0.01, torques=torque and [(torque,) * 3] * 6)
+        look(monitor, np.zeros((6, 3)), measured.tolist(), torques=torque and [(torque,) * 3] * 6)
         ticks += 1
     assert monitor.failed == {3: joint}
     assert 0.5 * at_most < ticks < at_most + 10
@@ -96,7 +102,7 @@ def test_a_servo_that_the_ground_may_stall_is_given_longer_than_one_whose_foot_d
     for contacts in ([True] * 6, [False] * 6, [None] * 6, None):
         monitor, ticks = JointMonitor(), 0
         while not monitor.failed:
-            monitor.step(np.zeros((6, 3)), measured.tolist(), 0.01, contacts=contacts)
+            look(monitor, np.zeros((6, 3)), measured.tolist(), contacts=contacts)
             ticks += 1
         times.append(ticks)
     assert times[0] > 200 > 50 > times[1]
@@ -109,7 +115,7 @@ def test_a_servo_that_pulls_as_its_foot_touches_the_ground_is_overloaded_and_has
     measured[3, 1] = 0.3
     for _ in range(500):
         torques = [(torque,) * 3] * 6
-        monitor.step(np.zeros((6, 3)), measured.tolist(), 0.01, torques=torques, contacts=[touches] * 6)
+        look(monitor, np.zeros((6, 3)), measured.tolist(), torques=torques, contacts=[touches] * 6)
     assert bool(monitor.failed) is fails
 
 
@@ -118,7 +124,7 @@ def test_a_servo_whose_joint_goes_back_to_its_command_is_not_idle(speed, fails):
     monitor, measured, torques = JointMonitor(np.full((6, 3), 2.0)), np.zeros((6, 3)), [(0.1,) * 3] * 6
     for tick in range(40):
         measured[3, 2] = min(0.01 * speed * tick - 0.7, 0.0)
-        monitor.step(np.zeros((6, 3)), measured.tolist(), 0.01, torques=torques)
+        look(monitor, np.zeros((6, 3)), measured.tolist(), torques=torques)
     assert bool(monitor.failed) is fails
 
 
@@ -169,7 +175,7 @@ def test_joints_of_a_caught_leg_that_are_off_and_then_do_not_move_are_not_taken_
         # For a second it is held.
         measured[4][0] = 0.02 if tick < 100 else measured[4][0]
         measured[4][0] -= 0.4 if 100 < tick < 122 else 0.0
-        monitor.step(0.2 * swung(tick), measured, 0.01)
+        look(monitor, 0.2 * swung(tick), measured)
     assert monitor.failed == {}
 
 

@@ -9,14 +9,14 @@ from typing import TYPE_CHECKING, TypeAlias
 
 import numpy as np
 
-from tarsus.control.readings import Vector
+from tarsus.control.readings import ValidReadings, Vector
 
 if TYPE_CHECKING:
     from jaxtyping import Bool, Float
 
 __all__ = ["JointMonitor"]
 
-_Measured: TypeAlias = "Sequence[Vector | None] | None"
+_Measured: TypeAlias = Sequence[Vector | None]
 # How often joints are looked at, but for rounding [s].
 _PERIOD = 0.04 * (1 - 1e-6)
 # A joint may lag behind its command for so long [s].
@@ -71,54 +71,36 @@ class JointMonitor:
         self._span = 0.0
         self._evidence: Float[np.ndarray, "2 legs 3"] | None = None
         # What was measured and commanded, since joints were last looked at for whether they are stuck.
-        self._compared: list[tuple[Sequence[Vector | None], Float[np.ndarray, "legs 3"]]] = []
+        self._compared: list[tuple[_Measured, Float[np.ndarray, "legs 3"]]] = []
         self._time, self._since = 0.0, 0.0
-        self._last: _Measured = None
+        self._last: _Measured | None = None
 
-    def step(
-        self,
-        commanded: Float[np.ndarray, "legs 3"],
-        measured: _Measured,
-        dt: float,
-        *,
-        torques: _Measured = None,
-        contacts: Sequence[bool | None] | None = None,
-    ) -> None:
+    def step(self, commanded: Float[np.ndarray, "legs 3"], valid: ValidReadings, dt: float) -> None:
         """Take in what is measured in a tick.
 
         Parameters
         ----------
         commanded : array, shape (legs, 3)
             Commanded until now [rad].
-        measured : sequence of ((coxa, femur, tibia) or None), or None
-            As measured [rad]; legs without a measurement are not monitored.
+        valid : ValidReadings
+            The readings; legs without measured joint angles are not monitored.
         dt : float
             Time since the last tick [s].
-        torques : sequence of ((coxa, femur, tibia) or None), or None
-            Of the servos, as measured [N m].
-        contacts : sequence of (bool or None), or None
-            Which feet touch the ground, as measured.
         """
         commands = self._commands
         commands.append((dt, commanded))
         self._span += dt
         if self._span > _LAG + dt:
             self._span -= commands.popleft()[0]
-        if measured is None:
+        if valid.joint_angles is None:
             return
         self._since += dt
-        if self._since < _PERIOD:
-            return
-        since, self._since = self._since, 0.0
-        self._look(measured, commanded, since, torques, contacts)
+        if self._since >= _PERIOD:
+            self._look(commanded, valid, valid.joint_angles, self._since)
+            self._since = 0.0
 
     def _look(
-        self,
-        measured: Sequence[Vector | None],
-        commanded: Float[np.ndarray, "legs 3"],
-        dt: float,
-        torques: _Measured,
-        contacts: Sequence[bool | None] | None,
+        self, commanded: Float[np.ndarray, "legs 3"], valid: ValidReadings, measured: _Measured, dt: float
     ) -> None:
         """Change the evidence against joints by their errors."""
         last, self._last = self._last or measured, measured
@@ -141,10 +123,10 @@ class JointMonitor:
             before = last[leg]
             towards = math.copysign(1.0, joints[leg][joint] - now)
             moves = before is not None and (now - before[joint]) * towards > _MOVES * dt
-            torque = self._torque(torques, leg, joint)
+            torque = self._torque(valid.torques, leg, joint)
             idle = torque < _IDLE and not moves
             gives_way = joint == _FEMUR and over > _GIVES_WAY
-            stalled = not idle and contacts is not None and bool(contacts[leg])
+            stalled = not idle and valid.contacts is not None and bool(valid.contacts[leg])
             weight = _weight(error, torque, idle=idle, gives_way=gives_way)
             self._evidence[0, leg, joint] += dt * weight * (_STALLED if stalled else 1.0)
         if stuck is not None:
@@ -152,7 +134,7 @@ class JointMonitor:
         for _, leg, joint in np.argwhere(self._evidence > _FAILED_AFTER).tolist():
             self.failed.setdefault(leg, joint)
 
-    def _torque(self, torques: _Measured, leg: int, joint: int) -> float:
+    def _torque(self, torques: _Measured | None, leg: int, joint: int) -> float:
         """Return the measured torque of a joint over the stall torque of its servo; NaN where it is unknown."""
         of_leg = None if torques is None else torques[leg]
         if of_leg is None or self._stall_torque is None:
@@ -160,7 +142,7 @@ class JointMonitor:
         return abs(of_leg[joint]) / float(self._stall_torque[leg, joint])
 
     def _stuck(
-        self, measured: Sequence[Vector | None], commanded: Float[np.ndarray, "legs 3"], dt: float
+        self, measured: _Measured, commanded: Float[np.ndarray, "legs 3"], dt: float
     ) -> Bool[np.ndarray, "legs 3"] | None:
         """Return which joints have not moved with their commands, at the end of a time in which any is so."""
         self._compared.append((measured, commanded))
@@ -185,9 +167,7 @@ def _weight(error: float, torque: float, *, idle: bool, gives_way: bool) -> floa
     return min((error / bound) ** 2, most)
 
 
-def _joints_off(
-    measured: Sequence[Vector | None], commanded: Sequence[Sequence[float]], most: float
-) -> list[tuple[int, int, float]]:
+def _joints_off(measured: _Measured, commanded: Sequence[Sequence[float]], most: float) -> list[tuple[int, int, float]]:
     """Return the joints that are measured and off by more than this: leg, joint and angle."""
     return [
         (leg, joint, now)
@@ -197,6 +177,6 @@ def _joints_off(
     ]
 
 
-def _array(values: Sequence[Vector | None]) -> Float[np.ndarray, "legs 3"]:
+def _array(values: _Measured) -> Float[np.ndarray, "legs 3"]:
     """Return what is measured of each leg; NaN where nothing is."""
     return np.array([(np.nan,) * 3 if leg is None else leg for leg in values])

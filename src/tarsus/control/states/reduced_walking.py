@@ -232,8 +232,7 @@ class LegFailures:
         now, dt : Snapshot, float
             The robot before the tick; length of the tick [s].
         """
-        told = activity.measured
-        self._monitor.step(now.angles, told.joint_angles, dt, torques=told.torques, contacts=told.contacts)
+        self._monitor.step(now.angles, activity.measured, dt)
         lost = activity.failed if isinstance(activity, ReducedWalking) else {}
         if self.sits or self.failed.keys() <= lost.keys():
             return activity
