@@ -162,9 +162,16 @@ def test_times_must_be_numbers():
 
 
 def test_controller_and_plant_are_of_one_robot():
-    other = IdealPlant(load_robot("phantomx").replace(leg_names=tuple("abcdef")))
-    with pytest.raises(InputError, match="both must be the same robot"):
-        run(RobotController(STRIDER), other, [])
+    other = load_robot("phantomx")
+    with pytest.raises(InputError, match=r"links or mount of .* differ by .* mm"):
+        run(RobotController(STRIDER), IdealPlant(other), [])
+    with pytest.raises(InputError, match="but their legs are a, b, c, d, e, f and front left"):
+        run(RobotController(STRIDER), IdealPlant(other.replace(leg_names=tuple("abcdef"))), [])
+
+
+def test_a_plant_with_errors_of_measures_is_the_same_robot():
+    measured = STRIDER.replace(femur=1.02 * STRIDER.femur, body_mass=2 * STRIDER.body_mass, name="mine")
+    assert run(RobotController(STRIDER), IdealPlant(measured), [], duration=0.1).motion.time[-1] == pytest.approx(0.1)
 
 
 def test_a_limitation_that_ends_before_its_command_is_no_unmet_command():

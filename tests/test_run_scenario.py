@@ -416,6 +416,17 @@ def test_an_environment_is_ground_under_each_leg_and_tilt():
     assert measured["attitude"] == pytest.approx((0.11, -0.02))
 
 
+def test_an_environment_refuses_what_can_not_be():
+    environment = Environment(load_robot("strider"))
+    for leg in (6, -1, "front left"):
+        with pytest.raises(InputError, match="is unknown; legs are 0 to 5"):
+            environment.set_ground(leg, 0.0)
+    with pytest.raises(InputError, match="force is nan; it must be a finite number"):
+        environment.set_force(0, math.nan)
+    with pytest.raises(InputError, match="pitch is 'flat'; it must be a number"):
+        environment.set_tilt(0.0, "flat")
+
+
 def test_forces_are_the_weight_and_what_is_set():
     robot = load_robot("strider")
     environment, controller = Environment(robot), WalkController(robot)

@@ -9,6 +9,8 @@ import numpy as np
 
 from tarsus.control.control_output import ControlOutput
 from tarsus.control.readings import RollPitch, SensorReadings
+from tarsus.errors import InputError
+from tarsus.gait.walk_setup import require_float
 from tarsus.kinematics.mass import known_weight
 from tarsus.load.foot_force import balanced_forces
 from tarsus.representation import represented
@@ -63,6 +65,11 @@ class Environment:
     ----------
     robot : Robot
         A single robot.
+
+    Raises
+    ------
+    InputError
+        If what is set is not finite, or the robot has no such leg.
     """
 
     def __init__(self, robot: Robot) -> None:
@@ -81,7 +88,7 @@ class Environment:
         height : float
             Over flat ground [m].
         """
-        self._height[leg], self._contacts = height, True
+        self._height[self._index(leg)], self._contacts = _finite("height", height), True
 
     def set_tilt(self, roll: float, pitch: float) -> None:
         """Set by how much the ground is tilted; an attitude sensor is present from then on.
@@ -91,7 +98,7 @@ class Environment:
         roll, pitch : float
             Left side up, front down [rad].
         """
-        self._tilt, self._attitude = np.array([roll, pitch]), True
+        self._tilt, self._attitude = np.array([_finite("roll", roll), _finite("pitch", pitch)]), True
 
     def set_force(self, leg: int, force: float) -> None:
         """Set the vertical force on a foot beyond its share of the weight; load cells are present from then on.
@@ -103,7 +110,7 @@ class Environment:
         force : float
             Ground on foot [N].
         """
-        self._force[leg], self._forces = force, True
+        self._force[self._index(leg)], self._forces = _finite("force", force), True
 
     def readings(self, output: ControlOutput) -> dict[str, Any]:
         """Return what is measured, by the names of `SensorReadings`.
@@ -120,6 +127,12 @@ class Environment:
             "forces": self._loads(output.feet, output.contacts | touching) if self._forces else None,
         }
 
+    def _index(self, leg: int) -> int:
+        """Return the number of a leg that the robot has."""
+        if leg not in range(len(self._height)):
+            raise InputError(f"leg {leg!r} is unknown; legs are 0 to {len(self._height) - 1}")
+        return leg
+
     def _tilted(self, output: ControlOutput) -> RollPitch:
         """Return roll and pitch: those in G, of the ground, and of its plane against that of the feet [rad]."""
         roll, pitch = (np.asarray(output.body.rpy)[:2] + self._tilt).tolist()
@@ -134,6 +147,14 @@ class Environment:
         centre = feet[:, :2].mean(axis=0)
         share = balanced_forces(feet.tolist(), bears.tolist(), centre.tolist(), self._weight)
         return np.where(bears, np.array(share) + self._force, 0.0)
+
+
+def _finite(name: str, value: float) -> float:
+    """Return a finite number as a float."""
+    number = require_float(name, value)
+    if not math.isfinite(number):
+        raise InputError(f"{name} is {number:g}; it must be a finite number")
+    return number
 
 
 @represented("robot")

@@ -3,18 +3,20 @@
 from __future__ import annotations
 
 import math
-from collections import deque
+from collections import UserDict, deque
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, TypeAlias
 
 import numpy as np
 
 from tarsus.control.readings import ValidReadings, Vector
+from tarsus.errors import InputError
+from tarsus.robot.robot import JOINTS
 
 if TYPE_CHECKING:
     from jaxtyping import Bool, Float
 
-__all__ = ["JointMonitor"]
+__all__ = ["FailedJoints", "JointMonitor"]
 
 _Measured: TypeAlias = Sequence[Vector | None]
 # How often joints are looked at, but for rounding [s].
@@ -44,6 +46,34 @@ _GIVES_WAY, _MOST_GIVING_WAY = 0.6, 30.0
 _COMMANDED, _WITHIN, _SHARE, _ONCE = 0.15, 1.0, 0.4, 1.0
 
 
+class FailedJoints(UserDict[int, int]):
+    """Legs with a joint that has failed, and the joint.
+
+    Parameters
+    ----------
+    legs : int
+        How many legs the robot has.
+
+    Raises
+    ------
+    InputError
+        If the robot has no such leg or joint, as it is set.
+    """
+
+    def __init__(self, legs: int) -> None:
+        super().__init__()
+        self._legs = legs
+
+    def __setitem__(self, leg: int, joint: int) -> None:
+        """Note that a joint of a leg has failed."""
+        if leg not in range(self._legs):
+            raise InputError(f"failed: leg {leg!r} is unknown; legs are 0 to {self._legs - 1}")
+        if joint not in range(len(JOINTS)):
+            known = ", ".join(f"{index} ({name})" for index, name in enumerate(JOINTS))
+            raise InputError(f"failed: joint {joint!r} of leg {leg} is unknown; joints are {known}")
+        super().__setitem__(leg, joint)
+
+
 class JointMonitor:
     """Compares measured joint angles with those that were commanded a moment ago.
 
@@ -54,18 +84,17 @@ class JointMonitor:
 
     Parameters
     ----------
-    stall_torque : array, shape (legs, 3), optional
-        Stall torques of the servos [N m]; NaN where unknown. Left out, all are.
+    stall_torque : array, shape (legs, 3)
+        Stall torques of the servos [N m]; NaN where unknown.
 
     Attributes
     ----------
-    failed : dict of int to int
+    failed : FailedJoints
         Legs with a joint that has failed, and the joint.
     """
 
-    def __init__(self, stall_torque: Float[np.ndarray, "legs 3"] | None = None) -> None:
-        self._stall_torque = stall_torque
-        self.failed: dict[int, int] = {}
+    def __init__(self, stall_torque: Float[np.ndarray, "legs 3"]) -> None:
+        self._stall_torque, self.failed = stall_torque, FailedJoints(len(stall_torque))
         # Durations and commands of the last ticks, and the sum of the durations [s].
         self._commands: deque[tuple[float, Float[np.ndarray, "legs 3"]]] = deque()
         self._span = 0.0
@@ -137,7 +166,7 @@ class JointMonitor:
     def _torque(self, torques: _Measured | None, leg: int, joint: int) -> float:
         """Return the measured torque of a joint over the stall torque of its servo; NaN where it is unknown."""
         of_leg = None if torques is None else torques[leg]
-        if of_leg is None or self._stall_torque is None:
+        if of_leg is None:
             return math.nan
         return abs(of_leg[joint]) / float(self._stall_torque[leg, joint])
 

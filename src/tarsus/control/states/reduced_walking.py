@@ -12,7 +12,7 @@ import numpy as np
 from tarsus.control.command import Command
 from tarsus.control.limitation import Limitation, LimitationKind
 from tarsus.control.readings import CHANNELS, SensorReadings, Vector
-from tarsus.control.sensing.joint_monitor import JointMonitor
+from tarsus.control.sensing.joint_monitor import FailedJoints, JointMonitor
 from tarsus.control.sensing.plain_values import as_items, as_vector
 from tarsus.control.states.activity import Snapshot, Walking
 from tarsus.control.states.robot_state import RobotState
@@ -209,18 +209,21 @@ class LegFailures:
     options
         As for `WalkController`.
 
-    Attributes
-    ----------
-    failed : dict of int to int
-        Legs that have failed, and the joint; to be changed by who knows better. A leg that is removed from it is used
-        again once the robot has lain.
     """
 
     def __init__(self, robot: Robot, **options: Any) -> None:
         stall = np.array([[at_supply(servo, None)[0] for servo in row] for row in robot.servos])
         self._robot, self._options, self._monitor = robot, options, JointMonitor(stall)
-        self.failed, self._cause = self._monitor.failed, ""
-        self._not_walkable: dict[int, int] = {}
+        self._not_walkable, self._cause = dict[int, int](), ""
+
+    @property
+    def failed(self) -> FailedJoints:
+        """Legs that have failed, and the joint; to be changed by who knows better.
+
+        A leg that is removed from it is used again once the robot has lain. Legs and joints that the robot does not
+        have are refused.
+        """
+        return self._monitor.failed
 
     def following(self, activity: Walking, now: Snapshot, dt: float) -> Walking:
         """Return the activity that follows after a tick: another one where another leg has failed.
