@@ -1,6 +1,6 @@
 """Write the table of ground.md that compares walks over ground that is felt with those over ground that is seen, too.
 
-python docs/seen_ground.py --seeds 5
+python docs/seen_ground.py --seeds 10
 """
 
 from __future__ import annotations
@@ -27,4 +27,4 @@ def tables(asked: argparse.Namespace) -> dict[str, str]:
 
 
 if __name__ == "__main__":
-    write_tables(__doc__, PAGE, tables, seeds=3)
+    write_tables(__doc__, PAGE, tables, seeds=5)

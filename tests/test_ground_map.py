@@ -143,11 +143,12 @@ def test_feet_keep_to_their_footholds_on_even_ground_and_away_from_edges_and_hol
 
 def test_a_foot_over_a_hole_gets_another_foothold_as_soon_as_there_is_one():
     (state, reach, footholds), known = stepping(), GroundMap()
-    for depth in (0.3, 0.0):
+    # Its legs reach 0.13 m below the ground, with the body as low as it goes.
+    for depth, hole in ((0.3, True), (0.14, True), (0.11, False), (0.0, False)):
         known.see(ValidReadings(ground=GroundHeights(heights=np.where(X > 0.1, -depth, 0.0))), state)
         known.step([(complex(foot), 0.0) for foot in REST[1:5]], None, state, 0.03, drift=0j)
         known.choose(state, reach, footholds)
-        assert bool(known.holes) == bool(depth)
+        assert bool(known.holes) == hole
     assert known.beside == {0: 0j}
 
 

@@ -23,17 +23,14 @@ from tarsus.gait.stance.stance_geometry import SWING_HEIGHT
 if TYPE_CHECKING:
     from jaxtyping import Shaped
 
-__all__ = ["DEEP", "GroundMap"]
-
-DEEP = 0.75
-"""Depth below the expected ground from which on there is a hole, over the body height."""
+__all__ = ["GroundMap"]
 
 # How fast the slope of the plane follows the feet [1/s].
 _SLOPE_RATE = 2.0
 # Part of the distance at which a foot may be put down that is kept for its stroke, at least.
 _STROKE_SHARE = 0.65
-# How far the body is lowered for deep ground, over its height.
-_LOWERED = 0.35
+# How far the body is lowered for deep ground, and from which depth on ground is a hole that legs reach, over its height.
+_LOWERED, _DEEPEST = 0.35, 1.2
 # How far off known heights may lie [m].
 _OFF = 0.03
 # Swing phase up to which a foothold is chosen, and up to which another one in place of a hole.
@@ -191,7 +188,7 @@ class GroundMap:
         if not self.given:
             return
         height, swing_height = state.posture.value[[2, SWING_HEIGHT]].tolist()
-        self._deepest = min(_LOWERED * height - max(reach.lowest), DEEP * height)
+        self._deepest = min(_LOWERED * height - max(reach.lowest), _DEEPEST * height)
         highest, turn = reach.highest_stand(swing_height), cmath.exp(-1j * state.yaw)
         for leg, (down, phase) in enumerate(zip(state.down.tolist(), state.swing_phase.tolist(), strict=True)):
             if down:

@@ -8,15 +8,16 @@ from functools import partial
 from tarsus.control.limitation import Limitation, LimitationKind
 from tarsus.control.limiter.protocol import TwistGrant, TwistRequest, leads_towards
 from tarsus.control.terrain.foot_contacts import Search
-from tarsus.control.terrain.ground_map import DEEP, GroundMap
+from tarsus.control.terrain.ground_map import GroundMap
 from tarsus.control.terrain.obstacles import Obstacles
 from tarsus.control.terrain.support import Footing, holds
 from tarsus.control.transition.foothold_transfer import FootholdTransfer
 
 __all__ = ["SLOW", "MissingGround"]
 
-# How much deeper a hole is on rough ground, over what that allows.
-_ROUGHLY_DEEP = 1.6
+# Depth of a foot without contact from which on there is a hole, over the body height; how much deeper it is on rough
+# ground, over what that allows.
+_DEEP, _ROUGHLY_DEEP = 0.75, 1.6
 # Depths from which on the walk slows down, and stands still, or goes on slowly with feet at the end of their reach [m].
 _SLOWS, _STANDS, _SLOWEST = 0.005, 0.02, 0.25
 # A foot that is measured higher than commanded by more is held up by its leg [m]; where it is at less depth than one of
@@ -169,7 +170,7 @@ class MissingGround:
             self._held[leg] = (before.get(leg, 0.0) + dt) * (held_up and not falls)
             long = not lasts or self._held[leg] > _HELD
             hangs = not falls and (depth > deep or not lasts) if leg in self.places else long
-            missing = depth - max(raised, 0.0) > DEEP * height + _ROUGHLY_DEEP * deeper or hangs
+            missing = depth - max(raised, 0.0) > _DEEP * height + _ROUGHLY_DEEP * deeper or hangs
             missing &= abs(leans) < max(self._scale * _LEANS, deeper)
             if _tips(search, deep, held=held):
                 self._tip(way)
