@@ -15,4 +15,4 @@ GROUNDS = ("flat", "smooth60", "blocks40", "step+40", "ramp+20", "ramp-20")
 
 if __name__ == "__main__":
     options = {"robots": Several(ROBOTS), "grounds": Several(GROUNDS), "cases": Several(tuple(GAIT_CASES))}
-    write_tables(__doc__, PAGE, partial(tables, name="gaits"), **options, seeds=2, jobs=1)
+    write_tables(__doc__, PAGE, partial(tables, name="gaits"), **options, seeds=5, jobs=1)
