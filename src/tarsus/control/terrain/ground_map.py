@@ -29,7 +29,8 @@ __all__ = ["GroundMap"]
 _SLOPE_RATE = 2.0
 # Part of the distance at which a foot may be put down that is kept for its stroke, at least.
 _STROKE_SHARE = 0.65
-# How far the body is lowered for deep ground, and from which depth on ground is a hole that legs reach, over its height.
+# How far the body is lowered for deep ground, and from which depth on ground that legs reach is a hole, over the body
+# height.
 _LOWERED, _DEEPEST = 0.35, 1.2
 # How far off known heights may lie [m].
 _OFF = 0.03
