@@ -19,6 +19,8 @@ from tarsus.simulation import SimulatedPlant
 
 STRIDER = tarsus.load_robot("strider")
 DT = 0.02
+# Stall torques that the robot's file does not have.
+UNKNOWN = np.full((6, 3), np.nan)
 
 
 def look(monitor, commanded, measured, **others):
@@ -33,7 +35,7 @@ def swung(tick):
 
 @pytest.mark.parametrize("lag", [0, 5, 12])
 def test_joints_that_lag_and_give_way_have_not_failed(lag):
-    monitor = JointMonitor(np.full((6, 3), np.nan))
+    monitor = JointMonitor(UNKNOWN)
     for tick in range(400):
         measured = swung(tick - lag) - 0.1
         look(monitor, swung(tick), measured.tolist())
@@ -42,7 +44,7 @@ def test_joints_that_lag_and_give_way_have_not_failed(lag):
 
 @pytest.mark.parametrize("fault", ["limp", "stuck"])
 def test_a_joint_that_does_not_follow_is_found(fault):
-    monitor = JointMonitor(np.full((6, 3), np.nan))
+    monitor = JointMonitor(UNKNOWN)
     for tick in range(400):
         measured = swung(tick).tolist()
         measured[2][1] = -0.8 if fault == "limp" else 0.3
@@ -57,7 +59,7 @@ def test_a_joint_that_does_not_follow_is_found(fault):
 
 
 def test_a_joint_that_is_stuck_where_its_command_moves_little_is_found_too():
-    monitor = JointMonitor(np.full((6, 3), np.nan))
+    monitor = JointMonitor(UNKNOWN)
     for tick in range(250):
         measured = (0.2 * swung(tick - 5)).tolist()
         measured[4][0] = 0.02
@@ -100,7 +102,7 @@ def test_a_servo_that_the_ground_may_stall_is_given_longer_than_one_whose_foot_d
     measured, times = np.zeros((6, 3)), []
     measured[3, 1] = 0.3
     for contacts in ([True] * 6, [False] * 6, [None] * 6, None):
-        monitor, ticks = JointMonitor(np.full((6, 3), np.nan)), 0
+        monitor, ticks = JointMonitor(UNKNOWN), 0
         while not monitor.failed:
             look(monitor, np.zeros((6, 3)), measured.tolist(), contacts=contacts)
             ticks += 1
@@ -142,7 +144,7 @@ def test_contacts_tell_of_the_legs_that_are_left_too(touches, failed):
 
 def test_only_legs_and_joints_that_there_are_can_have_failed():
     failed = tarsus.RobotController(STRIDER).leg_failures.failed
-    with pytest.raises(tarsus.InputError, match="leg 6 is unknown; legs are 0 to 5"):
+    with pytest.raises(tarsus.InputError, match="failed: the robot has no leg 6; its legs are 0 to 5"):
         failed[6] = 0
     with pytest.raises(tarsus.InputError, match=r"joint 'femur' of leg 1 is unknown; joints are 0 \(coxa\), 1"):
         failed.update({1: "femur"})
@@ -178,7 +180,7 @@ def test_gait_and_cycle_are_those_of_the_legs_that_are_left():
 
 
 def test_joints_of_a_caught_leg_that_are_off_and_then_do_not_move_are_not_taken_for_stuck():
-    monitor = JointMonitor(np.full((6, 3), np.nan))
+    monitor = JointMonitor(UNKNOWN)
     for tick in range(200):
         measured = (0.2 * swung(tick - 5)).tolist()
         # For a second it is held.

@@ -419,7 +419,7 @@ def test_an_environment_is_ground_under_each_leg_and_tilt():
 def test_an_environment_refuses_what_can_not_be():
     environment = Environment(load_robot("strider"))
     for leg in (6, -1, "front left"):
-        with pytest.raises(InputError, match="is unknown; legs are 0 to 5"):
+        with pytest.raises(InputError, match=f"environment: the robot has no leg {leg!r}; its legs are 0 to 5"):
             environment.set_ground(leg, 0.0)
     with pytest.raises(InputError, match="force is nan; it must be a finite number"):
         environment.set_force(0, math.nan)

@@ -7,14 +7,14 @@ from typing import TYPE_CHECKING, Any, Protocol, runtime_checkable
 
 import numpy as np
 
+from tarsus.arrays import require_finite
 from tarsus.control.control_output import ControlOutput
 from tarsus.control.readings import RollPitch, SensorReadings
-from tarsus.errors import InputError
 from tarsus.gait.walk_setup import require_float
 from tarsus.kinematics.mass import known_weight
 from tarsus.load.foot_force import balanced_forces
 from tarsus.representation import represented
-from tarsus.robot.robot import Robot, require_robot
+from tarsus.robot.robot import Robot, require_leg_number, require_robot
 
 if TYPE_CHECKING:
     from jaxtyping import Bool, Float
@@ -129,8 +129,7 @@ class Environment:
 
     def _index(self, leg: int) -> int:
         """Return the number of a leg that the robot has."""
-        if leg not in range(len(self._height)):
-            raise InputError(f"leg {leg!r} is unknown; legs are 0 to {len(self._height) - 1}")
+        require_leg_number("environment", leg, len(self._height))
         return leg
 
     def _tilted(self, output: ControlOutput) -> RollPitch:
@@ -152,8 +151,7 @@ class Environment:
 def _finite(name: str, value: float) -> float:
     """Return a finite number as a float."""
     number = require_float(name, value)
-    if not math.isfinite(number):
-        raise InputError(f"{name} is {number:g}; it must be a finite number")
+    require_finite(name, np.array(number))
     return number
 
 

@@ -22,7 +22,16 @@ from tarsus.robot.shape import JOINTS, OPTIONAL, TAILS, locked
 if TYPE_CHECKING:
     from jaxtyping import Float
 
-__all__ = ["JOINTS", "GaitDefaults", "Robot", "Source", "masses_advice", "require_robot", "stack_robots"]
+__all__ = [
+    "JOINTS",
+    "GaitDefaults",
+    "Robot",
+    "Source",
+    "masses_advice",
+    "require_leg_number",
+    "require_robot",
+    "stack_robots",
+]
 
 
 @represented("name", "leg_codes", "batch_shape", "coxa", "femur", "tibia", "limits", "body_mass", "link_mass", "gait")
@@ -261,6 +270,25 @@ def require_robot(robot: object) -> None:
     if not isinstance(robot, Robot):
         advice = f"; load_robot({robot!r}) loads one" if isinstance(robot, str) else ""
         raise InputError(f"robot is {robot!r}; it must be a Robot{advice}")
+
+
+def require_leg_number(name: str, leg: object, legs: int) -> None:
+    """Refuse what is no number of a leg.
+
+    Parameters
+    ----------
+    name, leg : str, object
+        What the leg is given for, in messages; expected: the number of a leg.
+    legs : int
+        How many legs the robot has.
+
+    Raises
+    ------
+    InputError
+        If the robot has no such leg.
+    """
+    if leg not in range(legs):
+        raise InputError(f"{name}: the robot has no leg {leg!r}; its legs are 0 to {legs - 1}")
 
 
 def masses_advice(robot: Robot) -> str:

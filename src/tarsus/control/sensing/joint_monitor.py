@@ -11,7 +11,7 @@ import numpy as np
 
 from tarsus.control.readings import ValidReadings, Vector
 from tarsus.errors import InputError
-from tarsus.robot.robot import JOINTS
+from tarsus.robot.robot import JOINTS, require_leg_number
 
 if TYPE_CHECKING:
     from jaxtyping import Bool, Float
@@ -66,8 +66,7 @@ class FailedJoints(UserDict[int, int]):
 
     def __setitem__(self, leg: int, joint: int) -> None:
         """Note that a joint of a leg has failed."""
-        if leg not in range(self._legs):
-            raise InputError(f"failed: leg {leg!r} is unknown; legs are 0 to {self._legs - 1}")
+        require_leg_number("failed", leg, self._legs)
         if joint not in range(len(JOINTS)):
             known = ", ".join(f"{index} ({name})" for index, name in enumerate(JOINTS))
             raise InputError(f"failed: joint {joint!r} of leg {leg} is unknown; joints are {known}")

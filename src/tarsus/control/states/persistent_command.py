@@ -6,9 +6,8 @@ import dataclasses
 
 from tarsus.control.command import Command
 from tarsus.control.states.robot_state import requested_state
-from tarsus.errors import InputError
 from tarsus.gait.gait import Gait
-from tarsus.robot.robot import Robot
+from tarsus.robot.robot import Robot, require_leg_number
 
 __all__ = ["PersistentCommand", "stopped"]
 
@@ -60,8 +59,7 @@ class PersistentCommand:
         targets = {**(self.full.foot_targets or {}), **(command.foot_targets or {})}
         velocities = command.foot_velocities
         for leg in (*targets, *(velocities or {})):
-            if leg not in range(legs):
-                raise InputError(f"foot_targets: the robot has no leg {leg!r}; its legs are 0 to {legs - 1}")
+            require_leg_number("foot_targets", leg, legs)
         return dataclasses.replace(
             self.full, twist=command.twist, foot_targets=targets or None, foot_velocities=velocities, **changes
         )

@@ -208,7 +208,6 @@ class LegFailures:
         A single robot.
     options
         As for `WalkController`.
-
     """
 
     def __init__(self, robot: Robot, **options: Any) -> None:

@@ -12,7 +12,6 @@ from tarsus.control.command import Command
 from tarsus.control.limitation import Cause, Limitation, LimitationKind
 from tarsus.control.walk.foot_target_motion import FootTargetMotion, begin_foot_target
 from tarsus.control.walk.state import GaitState
-from tarsus.errors import InputError
 from tarsus.gait.stance.stance_geometry import (
     SWING_HEIGHT,
     StanceGeometry,
@@ -20,7 +19,7 @@ from tarsus.gait.stance.stance_geometry import (
     rotation_rows,
     sway_extremes,
 )
-from tarsus.robot.robot import Robot
+from tarsus.robot.robot import Robot, require_leg_number
 
 if TYPE_CHECKING:
     from jaxtyping import Bool, Float
@@ -53,8 +52,7 @@ def excluded_legs(command: Command, before: tuple[int, ...], legs: int) -> tuple
         return before
     excluded = set(before)
     for leg, point in [*(command.foot_targets or {}).items(), *(command.foot_velocities or {}).items()]:
-        if leg not in range(legs):
-            raise InputError(f"foot_targets: the robot has no leg {leg!r}; its legs are 0 to {legs - 1}")
+        require_leg_number("foot_targets", leg, legs)
         (excluded.discard if point is None else excluded.add)(leg)
     return tuple(sorted(excluded))
 
