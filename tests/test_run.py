@@ -167,6 +167,9 @@ def test_controller_and_plant_are_of_one_robot():
         run(RobotController(STRIDER), IdealPlant(other), [])
     with pytest.raises(InputError, match="but their legs are a, b, c, d, e, f and front left"):
         run(RobotController(STRIDER), IdealPlant(other.replace(leg_names=tuple("abcdef"))), [])
+    turned = STRIDER.replace(mount_yaw=STRIDER.mount_yaw + np.array([0.0, 2 * math.pi + 0.2, 0, 0, 0, 0]))
+    with pytest.raises(InputError, match=r"links or mount of middle left differ by \d+\.?\d* mm; at most"):
+        run(RobotController(STRIDER), IdealPlant(turned), [])
 
 
 def test_a_plant_with_errors_of_measures_is_the_same_robot():

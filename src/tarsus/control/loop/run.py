@@ -15,7 +15,7 @@ from tarsus.control.plant import Plant
 from tarsus.control.robot_controller import RobotController
 from tarsus.errors import InputError
 from tarsus.gait.walk_setup import require_number
-from tarsus.robot.robot import Robot
+from tarsus.robot.same_robot import require_same_robot
 
 __all__ = ["CommandSource", "TimedCommands", "run"]
 
@@ -24,9 +24,6 @@ Asked: TypeAlias = Command | tuple[float, float, float]
 
 # Two times this near to each other are the same [s].
 _SAME_TIME = 1e-9
-# By how much links and mounts of plant and controller may differ, over the length of a leg: what is not the same robot
-# differs by more, a robot with the errors of its measures by less.
-_SAME_MEASURES = 0.1
 # How long a run without a duration continues after the last command [s], and how long what that command began may take.
 AFTER, LONGEST = 2.0, 120.0
 
@@ -129,7 +126,7 @@ def run(
     InputError
         If the plant is another robot, or a number is not finite or out of its range.
     """
-    _require_same_robot(plant.robot, controller.robot)
+    require_same_robot(plant.robot, controller.robot, "controller")
     rate = require_number("rate", rate, zero=False)
     jitter = require_number("jitter", jitter, zero=True)
     if jitter >= 1 / rate:
@@ -152,21 +149,3 @@ def run(
     finally:
         plant.stop()
     return recorder.recording(name=name, rate=rate)
-
-
-def _require_same_robot(plant: Robot, controller: Robot) -> None:
-    """Refuse a plant that is another robot than the controller's."""
-    both = f"the plant is {plant.name!r}, the controller is for {controller.name!r}; both must be the same robot"
-    if plant.leg_names != controller.leg_names:
-        names = " and ".join(", ".join(robot.leg_names) for robot in (plant, controller))
-        raise InputError(f"{both}, but their legs are {names}")
-    geometries = plant.geometry, controller.geometry
-    measures = [np.array([g.mount_x, g.mount_y, g.mount_z, g.coxa, g.femur, g.tibia]) for g in geometries]
-    off = np.abs(measures[0] - measures[1]).max(axis=0)
-    leg = int(off.argmax())
-    most = _SAME_MEASURES * float(measures[1][3:, leg].sum())
-    if off[leg] > most:
-        raise InputError(
-            f"{both}, but links or mount of {controller.leg_names[leg]} differ by {1000 * off[leg]:.3g} mm; at most "
-            f"{1000 * most:.3g} mm are taken for errors of measures"
-        )

@@ -8,6 +8,7 @@ from tarsus.control.states.robot_state import RobotState
 from tarsus.errors import InputError
 from tarsus.gait.motion import Motion
 from tarsus.representation import represented
+from tarsus.robot.same_robot import require_same_robot
 from tarsus.simulation.plant_state import PlantState
 from tarsus.simulation.simulated_plant import SimulatedPlant
 from tarsus.simulation.truth.trace import Trace
@@ -87,11 +88,7 @@ def play(motion: Motion, plant: SimulatedPlant) -> Trace:
     SimulationError
         If the simulation becomes unstable.
     """
-    if motion.robot.leg_names != plant.robot.leg_names:
-        raise InputError(
-            f"the motion is of {motion.robot.name!r} with {motion.robot.legs} legs, the plant is "
-            f"{plant.robot.name!r} with {plant.robot.legs}; both must be the same robot"
-        )
+    require_same_robot(plant.robot, motion.robot, "motion")
     traced, times = TracedPlant(plant), motion.time.tolist()
     traced.start(_output(motion, 0))
     before = times[0]

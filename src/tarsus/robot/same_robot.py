@@ -1,0 +1,56 @@
+"""Whether two robots are the same one, but for the errors of its measures: what a plant and its commands must be of."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from tarsus.errors import InputError
+from tarsus.robot.robot import Robot
+
+if TYPE_CHECKING:
+    from jaxtyping import Float
+
+__all__ = ["require_same_robot"]
+
+# By how much links and mounts may differ, over the length of a leg: those of another robot differ by more, those of a
+# robot with the errors of its measures by less.
+_SAME_MEASURES = 0.1
+
+
+def require_same_robot(plant: Robot, commanded: Robot, what: str) -> None:
+    """Refuse a plant that is another robot than the one that is commanded.
+
+    Parameters
+    ----------
+    plant, commanded : Robot
+        Single robots: that of the plant, and the one that its commands are made for.
+    what : str
+        What the commands are from, in the message: "controller".
+
+    Raises
+    ------
+    InputError
+        If the legs have other names, or links or mounts differ by more than 0.1 of the length of the leg.
+    """
+    both = f"the plant is {plant.name!r}, the {what} is for {commanded.name!r}; both must be the same robot"
+    if plant.leg_names != commanded.leg_names:
+        names = " and ".join(", ".join(robot.leg_names) for robot in (plant, commanded))
+        raise InputError(f"{both}, but their legs are {names}")
+    lengths = np.sum([commanded.coxa, commanded.femur, commanded.tibia], axis=0)
+    # Other directions of the legs count by how far they move the feet.
+    turn = np.abs(np.angle(np.exp(1j * (plant.mount_yaw - commanded.mount_yaw)))) * lengths
+    off = np.max([*np.abs(_measures(plant) - _measures(commanded)), turn], axis=0)
+    leg = int((off / lengths).argmax())
+    most = _SAME_MEASURES * lengths[leg]
+    if off[leg] > most:
+        raise InputError(
+            f"{both}, but links or mount of {commanded.leg_names[leg]} differ by {1e3 * off[leg]:.3g} mm; at most "
+            f"{1e3 * most:.3g} mm are taken for errors of measures"
+        )
+
+
+def _measures(robot: Robot) -> Float[np.ndarray, "6 legs"]:
+    """Return the positions of the mounts and the lengths of the links [m]."""
+    return np.array([*robot.mount_position.T, robot.coxa, robot.femur, robot.tibia])
