@@ -9,7 +9,7 @@ import pytest
 
 import tarsus
 from tarsus.control.readings import ValidReadings
-from tarsus.control.sensing.joint_monitor import JointMonitor
+from tarsus.control.sensing.servo_monitor import ServoMonitor
 from tarsus.control.states.reduced_walking import ReducedWalking
 from tarsus.errors import InputError
 from tarsus.gait.stance.support_stance import support_stance
@@ -24,7 +24,7 @@ UNKNOWN = np.full((6, 3), np.nan)
 
 
 def look(monitor, commanded, measured, **others):
-    """Give a joint monitor what is measured in a tick of 10 ms."""
+    """Give a servo monitor what is measured in a tick of 10 ms."""
     monitor.step(commanded, ValidReadings(joint_angles=measured, **others), 0.01)
 
 
@@ -35,7 +35,7 @@ def swung(tick):
 
 @pytest.mark.parametrize("lag", [0, 5, 12])
 def test_joints_that_lag_and_give_way_have_not_failed(lag):
-    monitor = JointMonitor(UNKNOWN)
+    monitor = ServoMonitor(UNKNOWN)
     for tick in range(400):
         measured = swung(tick - lag) - 0.1
         look(monitor, swung(tick), measured.tolist())
@@ -44,7 +44,7 @@ def test_joints_that_lag_and_give_way_have_not_failed(lag):
 
 @pytest.mark.parametrize("fault", ["limp", "stuck"])
 def test_a_joint_that_does_not_follow_is_found(fault):
-    monitor = JointMonitor(UNKNOWN)
+    monitor = ServoMonitor(UNKNOWN)
     for tick in range(400):
         measured = swung(tick).tolist()
         measured[2][1] = -0.8 if fault == "limp" else 0.3
@@ -59,7 +59,7 @@ def test_a_joint_that_does_not_follow_is_found(fault):
 
 
 def test_a_joint_that_is_stuck_where_its_command_moves_little_is_found_too():
-    monitor = JointMonitor(UNKNOWN)
+    monitor = ServoMonitor(UNKNOWN)
     for tick in range(250):
         measured = (0.2 * swung(tick - 5)).tolist()
         measured[4][0] = 0.02
@@ -73,7 +73,7 @@ def test_measured_torques_tell_an_idle_servo_from_a_leg_that_is_caught(torque, a
     stall = np.full((6, 3), 2.0)
     # Nothing is told by the torque of a servo whose stall torque is unknown.
     stall[5, 1], after = np.nan, after if leg == 2 else (20, 40)
-    monitor, measured, torques = JointMonitor(stall), np.zeros((6, 3)), [(1.0, 1.0, 1.0)] * 6
+    monitor, measured, torques = ServoMonitor(stall), np.zeros((6, 3)), [(1.0, 1.0, 1.0)] * 6
     measured[leg, 1], torques[leg] = -0.45, (torque,) * 3
     ticks = 0
     while not monitor.failed:
@@ -88,7 +88,7 @@ def test_measured_torques_tell_an_idle_servo_from_a_leg_that_is_caught(torque, a
     [(1, 0.8, None, 10), (1, -0.8, None, 30), (1, 0.5, None, 30), (2, 0.8, None, 30), (1, 0.8, 2.0, 210)],
 )
 def test_a_femur_that_gives_way_under_the_robot_is_found_before_it_tips(joint, error, torque, at_most):
-    monitor, measured = JointMonitor(np.full((6, 3), 2.0)), np.zeros((6, 3))
+    monitor, measured = ServoMonitor(np.full((6, 3), 2.0)), np.zeros((6, 3))
     measured[3, joint] = error
     ticks = 0
     while not monitor.failed:
@@ -102,7 +102,7 @@ def test_a_servo_that_the_ground_may_stall_is_given_longer_than_one_whose_foot_d
     measured, times = np.zeros((6, 3)), []
     measured[3, 1] = 0.3
     for contacts in ([True] * 6, [False] * 6, [None] * 6, None):
-        monitor, ticks = JointMonitor(UNKNOWN), 0
+        monitor, ticks = ServoMonitor(UNKNOWN), 0
         while not monitor.failed:
             look(monitor, np.zeros((6, 3)), measured.tolist(), contacts=contacts)
             ticks += 1
@@ -113,7 +113,7 @@ def test_a_servo_that_the_ground_may_stall_is_given_longer_than_one_whose_foot_d
 
 @pytest.mark.parametrize(("touches", "torque", "fails"), [(True, 1.9, False), (False, 1.9, True), (True, 0.1, True)])
 def test_a_servo_that_pulls_as_its_foot_touches_the_ground_is_overloaded_and_has_not_failed(touches, torque, fails):
-    monitor, measured = JointMonitor(np.full((6, 3), 2.0)), np.zeros((6, 3))
+    monitor, measured = ServoMonitor(np.full((6, 3), 2.0)), np.zeros((6, 3))
     measured[3, 1] = 0.3
     for _ in range(500):
         torques = [(torque,) * 3] * 6
@@ -123,7 +123,7 @@ def test_a_servo_that_pulls_as_its_foot_touches_the_ground_is_overloaded_and_has
 
 @pytest.mark.parametrize(("speed", "fails"), [(0.5, True), (2.0, False)])
 def test_a_servo_whose_joint_goes_back_to_its_command_is_not_idle(speed, fails):
-    monitor, measured, torques = JointMonitor(np.full((6, 3), 2.0)), np.zeros((6, 3)), [(0.1,) * 3] * 6
+    monitor, measured, torques = ServoMonitor(np.full((6, 3), 2.0)), np.zeros((6, 3)), [(0.1,) * 3] * 6
     for tick in range(40):
         measured[3, 2] = min(0.01 * speed * tick - 0.7, 0.0)
         look(monitor, np.zeros((6, 3)), measured.tolist(), torques=torques)
@@ -180,7 +180,7 @@ def test_gait_and_cycle_are_those_of_the_legs_that_are_left():
 
 
 def test_joints_of_a_caught_leg_that_are_off_and_then_do_not_move_are_not_taken_for_stuck():
-    monitor = JointMonitor(UNKNOWN)
+    monitor = ServoMonitor(UNKNOWN)
     for tick in range(200):
         measured = (0.2 * swung(tick - 5)).tolist()
         # For a second it is held.

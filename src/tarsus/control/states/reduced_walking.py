@@ -12,8 +12,8 @@ import numpy as np
 from tarsus.control.command import Command
 from tarsus.control.limitation import Limitation, LimitationKind
 from tarsus.control.readings import CHANNELS, SensorReadings, Vector
-from tarsus.control.sensing.joint_monitor import FailedJoints, JointMonitor
 from tarsus.control.sensing.plain_values import as_items, as_vector
+from tarsus.control.sensing.servo_monitor import FailedJoints, ServoMonitor
 from tarsus.control.states.activity import Snapshot, Walking
 from tarsus.control.states.robot_state import RobotState
 from tarsus.control.walk_controller import WalkController
@@ -212,7 +212,7 @@ class LegFailures:
 
     def __init__(self, robot: Robot, **options: Any) -> None:
         stall = np.array([[at_supply(servo, None)[0] for servo in row] for row in robot.servos])
-        self._robot, self._options, self._monitor = robot, options, JointMonitor(stall)
+        self._robot, self._options, self._monitor = robot, options, ServoMonitor(stall)
         self._not_walkable, self._cause = dict[int, int](), ""
 
     @property

@@ -1,4 +1,4 @@
-"""Joint monitor: finds servos that do not follow their commands, by the measured joint angles."""
+"""Servo monitor: finds servos that do not follow their commands, by the measured joint angles."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from tarsus.robot.robot import JOINTS, require_leg_number
 if TYPE_CHECKING:
     from jaxtyping import Bool, Float
 
-__all__ = ["FailedJoints", "JointMonitor"]
+__all__ = ["FailedJoints", "ServoMonitor"]
 
 _Measured: TypeAlias = Sequence[Vector | None]
 # How often joints are looked at, but for rounding [s].
@@ -73,7 +73,7 @@ class FailedJoints(UserDict[int, int]):
         super().__setitem__(leg, joint)
 
 
-class JointMonitor:
+class ServoMonitor:
     """Compares measured joint angles with those that were commanded a moment ago.
 
     A servo that is loaded gives way, and one that is slow lags behind. One that is dead, limp or stuck is off by more
