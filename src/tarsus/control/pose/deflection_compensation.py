@@ -69,7 +69,7 @@ class DeflectionCompensation:
         self._loads, self._legs = VerticalLoads(robot), list[tuple[float, ...]]()
         if all(all(leg) for leg in robot.servos):
             yields, g = (1 / JointSprings.of(robot).stiffness[:, 1:]).T, robot.geometry
-            columns = (*robot.mount_position.T[:2], robot.mount_yaw, g.coxa, g.femur, g.tibia, *yields)
+            columns = (*robot.mount_position.T[:2], robot.mount_yaw, g.coxa, g.side, g.femur, g.tibia, *yields)
             self._legs = list(zip(*(column.tolist() for column in columns), strict=True))
 
     def step(
@@ -115,10 +115,10 @@ class DeflectionCompensation:
         """Find where the feet are, and what a load of 1 N on each turns its joints by."""
         self._joints, self._feet, self._sinks = joints, [], []
         turns: list[tuple[float, float, float]] = []
-        self._arms = [_lever_arms(*leg[4:6], *turns[1:]) for leg, turns in zip(self._legs, joints, strict=True)]
+        self._arms = [_lever_arms(*leg[5:7], *turns[1:]) for leg, turns in zip(self._legs, joints, strict=True)]
         for leg, (coxa, *_), (to_knee, _, to_hip, _) in zip(self._legs, joints, self._arms, strict=True):
-            x, y, yaw, length, _, _, femur_yields, tibia_yields = leg
-            out = cmath.rect(length + to_hip, yaw + coxa)
+            x, y, yaw, length, side, _, _, femur_yields, tibia_yields = leg
+            out = complex(length + to_hip, side) * cmath.rect(1.0, yaw + coxa)
             self._feet.append((x + out.real, y + out.imag))
             turned, bent = femur_yields * to_hip, tibia_yields * to_knee
             self._sinks.append(turned * to_hip + bent * to_knee)
@@ -139,7 +139,7 @@ class DeflectionCompensation:
                 heading = self._legs[leg][2] + coxa
                 out = force[0] * math.cos(heading) + force[1] * math.sin(heading)
                 bends = to_hip * force[2] + below_hip * out
-            bends *= self._legs[leg][6]
+            bends *= self._legs[leg][7]
             product, square = product + bends * (angles[1] - femur), square + bends * bends
         if square > _LEAST:
             learnt = self.softness + min(_LEARNING_RATE * self._since, 1.0) * (product / square - self.softness)
