@@ -133,7 +133,7 @@ class BodyMotion:
     @property
     def limitations(self) -> list[Limitation]:
         """What the ground does not allow."""
-        cause = "end of the legs' reach on this slope"
+        cause = "end of the legs' reach on this ground"
         found = [Limitation(kind=LimitationKind.ATTITUDE, cause=cause)] if self._posture.given_way > 0.0 else []
         return found + self.odometry.limitations
 
