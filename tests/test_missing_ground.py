@@ -169,6 +169,16 @@ def test_the_body_backs_off_until_feet_away_from_the_edge_hold_it():
     assert missing.back == 0
 
 
+def test_a_robot_that_turns_backs_off_though_feet_away_from_the_edge_hold_it():
+    for twist in ((0.1, 0.0, 0.0), (0.0, 0.0, 0.3)):
+        missing = MissingGround(NAMES)
+        stepped(missing, [], stands=[True] * 6, twist=twist)
+        back = stepped(missing, [(0, 0.08, True, True)], centre=-0.1 + 0j).back
+        assert (back != 0) is (twist[2] != 0.0)
+        # Away from where the foot is.
+        assert (back / REST[0]).real <= 0
+
+
 def test_the_body_does_not_back_off_over_a_foot_that_finds_no_ground_behind_it():
     ahead, behind = (stepped(MissingGround(NAMES), [(leg, 0.08, True, True)], twist=(0.1, 0.0, 0.0)) for leg in (0, 2))
     assert ahead.back.real < 0
@@ -438,20 +448,34 @@ class Walk:
         self.controller = tarsus.RobotController(robot)
         self.output = self.controller.output
         self.plant.start(self.output)
-        self.tilt = 0.0
+        self.tilt = self.yaw = 0.0
 
-    def go(self, speed, time):
+    def go(self, speed, time, turning=0.0):
         """Return where the body is after a walk."""
         for _ in range(round(100 * time)):
-            self.output = self.controller.step((speed, 0.0, 0.0), 0.01, self.plant.step(self.output, 0.01))
+            self.output = self.controller.step((speed, 0.0, turning), 0.01, self.plant.step(self.output, 0.01))
             assert not self.plant.state.body_touches
-            self.tilt = max(self.tilt, *np.abs(np.asarray(self.plant.state.body.rpy)[:2]).tolist())
+            *tilt, yaw = np.asarray(self.plant.state.body.rpy).tolist()
+            self.tilt, self.yaw = max(self.tilt, *map(abs, tilt)), np.unwrap([self.yaw, yaw])[1]
         return self.plant.state.body.position[0]
 
     @property
     def named(self):
         """The legs that the ground stops."""
         return {limit.leg for limit in self.output.limitations if limit.kind is LimitationKind.GROUND and limit.leg}
+
+
+@pytest.mark.no_cover
+@pytest.mark.parametrize("name", ["strider", "makeyourpet"])
+def test_a_robot_turns_on_the_spot_at_an_edge(name):
+    robot = tarsus.load_robot(name)
+    speed, rate = (0.5 * tarsus.WalkController(robot).top_speed(way) for way in ((1, 0, 0), (0, 0, 1)))
+    walk = Walk(terrain.Step(rise=-0.4, start=0.49), robot=robot)
+    walk.go(speed, 6.0)
+    before = walk.yaw
+    walk.go(0.0, 6.0, turning=rate)
+    assert walk.yaw - before > 0.4 * rate * 6.0
+    assert walk.tilt < np.radians(15)
 
 
 @pytest.mark.no_cover
@@ -551,7 +575,7 @@ def test_a_robot_crosses_a_trench_that_it_sees():
     assert walk.go(0.19, 4.5) > 0.35 + 0.08
 
 
-@pytest.mark.parametrize(("twist", "way"), [((0.1, 0.0, 0.0), 1), ((0.0, 0.0, 0.3), 1j * REST[0]), ((0.0,) * 3, -1)])
+@pytest.mark.parametrize(("twist", "way"), [((0.1, 0.0, 0.0), 1), ((0.0, 0.0, 0.3), REST[0]), ((0.0,) * 3, -1)])
 def test_a_foot_that_loses_its_ground_while_it_is_moved_has_met_the_edge_on_its_way(twist, way):
     # It has passed its rest foothold already.
     missing, feet = MissingGround(NAMES), [REST[0] - 0.02, *REST[1:]]
@@ -565,6 +589,15 @@ def test_a_foot_that_loses_its_ground_while_it_is_moved_has_met_the_edge_on_its_
     two = [False, True, False, False, True, False]
     missing = stepped(MissingGround(NAMES), [], feet, twist=twist)
     assert (stepped(missing, [(0, 0.03, True, True)], feet, stands=two).back / way).real < 0
+
+
+def test_an_edge_stays_where_it_is_as_the_robot_turns():
+    missing, turned = stepped(MissingGround(NAMES), [(0, 0.08, True, True)], twist=(0.1, 0.0, 0.0)), np.pi / 2
+    assert limited(missing, 0.1, 0.0, 0.0).fraction == 0.0
+    missing.turn_to(turned)
+    # Ahead is to the right by then.
+    assert limited(missing, 0.0, -0.1, 0.0).fraction == 0.0
+    assert limited(missing, 0.1, 0.0, 0.0).fraction == 1.0
 
 
 @pytest.mark.parametrize(("waits", "speed", "way"), [(10, -0.1, 1), (10, 0.0, 1), (10, 0.1, 1), (610, -0.1, 1)])

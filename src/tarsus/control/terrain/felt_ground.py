@@ -218,6 +218,7 @@ class FeltGround:
         near = not_sunk(state, self.body, footing, tips=bool(missing.tips or missing.places))
         contacts.find_open(footing._replace(down=near), self.measured.attitude, dt)
         missing.twist = state.twist.value.tolist()
+        missing.turn_to(state.yaw)
         if self.condition.carried:
             missing.forget()
             self.ground.plane = FootPlane()

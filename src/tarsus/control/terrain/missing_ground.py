@@ -7,6 +7,7 @@ from functools import partial
 
 from tarsus.control.limitation import Limitation, LimitationKind
 from tarsus.control.limiter.protocol import TwistGrant, TwistRequest, leads_towards
+from tarsus.control.terrain.edge import FORGETS, Edge, direction
 from tarsus.control.terrain.foot_contacts import Search
 from tarsus.control.terrain.ground_map import GroundMap
 from tarsus.control.terrain.obstacles import Obstacles
@@ -36,18 +37,15 @@ _SURE = 0.0125
 # Where a foot steps back to, from its rest foothold against its way, over how far from there it may stand; with the
 # last, the body backs off as far as it may.
 _BACK = (0.4, 1.0, 1.0)
-# A foot this close to its place is there; one this far from its rest foothold is on that side of it [m].
-_THERE, _OFF = 0.004, 0.01
-# A foot that was moved faster over the ground has met the edge on that way [m/s].
-_MOVES = 0.005
+# A foot this close to its place is there [m].
+_THERE = 0.004
 # The body backs off until feet this far from the edge hold it with this margin [m], so far at most [m], so fast [m/s].
 _FIRM, _MARGIN, _BACKS, _SPEED = 0.06, 0.03, 0.08, 0.15
 # A foot that finds no ground at less depth than this is over no hole: the leg does not reach there [m].
 _SHALLOW = 0.02
-# How often and when the walk tries other footholds at an edge to ground that is seen, not reached [s]; after which
-# time without holes that, and which edge the robot has left, is forgotten [s]; for how long such a walk makes up for no
-# lost time [s].
-_AGAIN, _WAITS, _FORGETS, _CAREFUL = 2, 1.0, 6.0, 1.5
+# How often the walk tries other footholds at an edge to ground that is seen, not reached, when [s], and for how long it
+# makes up for no lost time then [s].
+_AGAIN, _WAITS, _CAREFUL = 2, 1.0, 1.5
 
 
 class MissingGround:
@@ -89,12 +87,10 @@ class MissingGround:
         self.lost: int | None = None
         # How long feet that hang have been held up by their legs [s].
         self._held = dict[int, float]()
-        self._way, self._left, self._backed, self._again, self._since, self._slows = 0j, 0j, 0.0, 0, 0.0, ""
+        self._edge, self._backed, self._again, self._slows = Edge(), 0.0, 0, ""
         # Whether the robot is to stop, and whether rest footholds are over the hole that it has met.
         self._stops, self._over = True, False
-        # The twist before any foot searched, by which it has met the edge.
         self.twist: Sequence[float] = (0.0, 0.0, 0.0)
-        self._walked: Sequence[float] = self.twist
 
     @property
     def limitations(self) -> list[Limitation]:
@@ -106,7 +102,12 @@ class MissingGround:
     def forget(self) -> None:
         """Forget holes and obstacles: the robot is carried elsewhere."""
         self.obstacles, self._tries, self.places = Obstacles(self._scale), [0] * len(self._names), {}
-        self._way, self._left, self.refuses, self._again = 0j, 0j, False, 0
+        self._edge.forget()
+        self.refuses, self._again = False, 0
+
+    def turn_to(self, yaw: float) -> None:
+        """Take the direction of the heading frame [rad]: edges and obstacles stay where they are as that turns."""
+        self.obstacles.found *= self._edge.turn_to(yaw)
 
     def steps_back(self, leg: int, foot: complex) -> bool:
         """Return whether a foot, here in the heading frame, is on its way to another place."""
@@ -139,7 +140,8 @@ class MissingGround:
             Rest footholds, and how far from these feet may stand; how much deeper ground may be than expected [m].
         """
         (feet, stands, centre, height), rest = footing, footholds.rest.tolist()
-        self._walked = self._walked if searches else self.twist
+        if not searches:
+            self._edge.twist = self.twist
         beside = self.obstacles.go_on(lambda leg: not self.steps_back(leg, feet[leg]))
         self.places |= beside
         searching = {search.leg for search in searches} | beside.keys()
@@ -161,7 +163,7 @@ class MissingGround:
         held = not (searches and standing) or holds(standing, centre + well)
         for search in searches:
             leg, depth, falls, lasts, _, raised, leans = search
-            way = self._to_edge(feet[leg], rest[leg])
+            way = self._edge.seen_from(feet[leg], rest[leg])
             slowest = 0.0 if falls else _SLOWEST
             pace = max(1 - (depth - slows) / (deep - slows), slowest)
             self.pace, self._slows = min((self.pace, self._slows), (pace, self._names[leg]))
@@ -181,36 +183,39 @@ class MissingGround:
 
     def _back_off(self, footing: Footing, dt: float) -> None:
         """Decide with which velocity the body backs off, and whether the walk goes on where it has waited."""
-        (feet, stands, centre, _), self._since = footing, 0.0 if self.places else self._since + dt
+        feet, stands, centre, _ = footing
+        self._edge.since = 0.0 if self.places else self._edge.since + dt
         speed, backed = self._scale * _SPEED, self._backed < self._scale * _BACKS
         if not self.places:
             # A robot that tips where a foot sinks goes back at once.
-            way = self.tips or self._way * (self._stops and self._over)
+            way = self.tips or self._edge.way * (self._stops and self._over)
             self.back = -speed * way * backed
             self._backed = (self._backed + speed * dt) * bool(way)
-            if self.refuses and not self._stops and self._again < _AGAIN and self._since > _WAITS:
+            if self.refuses and not self._stops and self._again < _AGAIN and self._edge.since > _WAITS:
                 self._again += 1
-                self._leave()
-            elif not self.refuses and self._since > _FORGETS:
+                self._edge.leave(self.obstacles.found)
+            elif not self.refuses and self._edge.since > FORGETS:
                 self._again, self.obstacles.found = 0, 0j
             return
-        self.pace, self._slows, turn = _SLOWEST * bool(self.stranded), "", self._way.conjugate()
+        self.pace, self._slows, turn = _SLOWEST * bool(self.stranded), "", self._edge.way.conjugate()
         along = [(feet[leg] * turn).real for leg in self.places]
         edge = min(along) - self._scale * _FIRM
         firm = [foot for foot, on in zip(feet, stands, strict=True) if on and (foot * turn).real < edge]
-        enough = max(self._tries) < len(_BACK) and holds(firm, centre + self._scale * _MARGIN * self._way)
+        # A robot that turns meets the edge anew with each step, unless it goes back.
+        enough = max(self._tries) < len(_BACK) and not self._edge.turns
+        enough &= holds(firm, centre + self._scale * _MARGIN * self._edge.way)
         # From a foot behind the body, it would back off over the hole.
         if backed and max(along) > (centre * turn).real and not (self.obstacles.legs or enough):
-            self.back = -speed * self._way
+            self.back = -speed * self._edge.way
             self._backed += speed * dt
 
     def _step_back(self, leg: int, depth: float, way: complex, footholds: FootholdTransfer, *, sure: bool) -> None:
         """Choose a place behind its rest foothold for a foot on this way that finds no ground at this depth [m]."""
         self._tries[leg] += 1
         if self._tries[leg] == 1 and not self.refuses:
-            self._way = way
+            self._edge.way = way
         back = _BACK[min(self._tries[leg], len(_BACK)) - 1] * footholds.placement_radii[leg]
-        self.places[leg] = complex(footholds.rest[leg]) - back * self._way
+        self.places[leg] = complex(footholds.rest[leg]) - back * self._edge.way
         # Ground that is seen and not reached from here may be reached with other footholds.
         reached, shallow = f"no ground within {1e3 * depth:.0f} mm below the other feet", depth < _SHALLOW
         self._cause = self._names[leg], "the ground is lower than the leg reaches" if shallow else reached
@@ -233,62 +238,38 @@ class MissingGround:
         ends = not self.obstacles.tries(leg)
         self._cause = self._names[leg], "an obstacle stops the foot" + ends * " that is higher than the leg steps"
         if ends:
-            self._way, self._again = self.obstacles.found, max(self._again, _AGAIN - 1)
+            self._edge.way, self._again = self.obstacles.found, max(self._again, _AGAIN - 1)
         return start - foot
 
     def sees(self, ground: GroundMap, rest: Sequence[complex]) -> None:
         """Take note of feet in the air that would be put down into a hole, and of their rest footholds [m] in one."""
-        self._over = any(leads_towards(at, self._way) and ground.is_hole(at) for at in rest)
+        self._over = any(leads_towards(at, self._edge.way) and ground.is_hole(at) for at in rest)
         for leg, place in ground.holes.items():
-            self._way = _way(place - rest[leg], rest[leg])
+            self._edge.way = direction(place - rest[leg], rest[leg])
             self._cause, self._again = (self._names[leg], "no ground within reach at its next foothold"), _AGAIN
 
     def held(self, shift: complex) -> complex:
         """Return the part of a velocity of all feet by which the body would go on where it may not [m/s]."""
-        return min((shift * self._way.conjugate()).real, 0.0) * self._way if self.refuses else 0j
-
-    def _to_edge(self, foot: complex, rest: complex) -> complex:
-        """Return the way to the edge at a foot: its own over the ground, or that from its rest foothold if it stood."""
-        vx, vy, wz = self._walked
-        velocity = complex(vx, vy) + 1j * wz * rest
-        velocity *= abs(velocity) > _MOVES
-        if self._left and self._since < _FORGETS and (not velocity or leads_towards(-velocity, self._left)):
-            return self._left
-        if velocity:
-            way = velocity / abs(velocity)
-            # The edge at a foot behind the body on its way is one that the robot leaves.
-            return -way if leads_towards(rest, -way) else way
-        # A foot that has stepped back from an edge is on the other side of its rest foothold.
-        return self._way if leads_towards(rest, self._way) else _way(foot - rest, rest)
+        return min((shift * self._edge.way.conjugate()).real, 0.0) * self._edge.way if self.refuses else 0j
 
     def limit(self, request: TwistRequest, grant: TwistGrant) -> TwistGrant:
         """Return the grant, without a twist that leads over the edge; one that leads away is granted from then on."""
         velocity = complex(*request.twist[:2])
         self._stops = not any(request.twist)
-        self.refuses = leads_towards(velocity, self._way) or (self._stops and self._over)
+        self.refuses = leads_towards(velocity, self._edge.way) or (self._stops and self._over)
         self.stranded = [leg for leg in self.places if self.gives_up(leg) and any(request.twist) and not self.refuses]
         if self.refuses:
             name, cause = self._cause
             return grant.at_most(0.0, Limitation(kind=LimitationKind.GROUND, leg=name, cause=cause))
         for leg in self.obstacles.led_away(partial(leads_towards, velocity)):
             self._drop(leg)
-        if any(request.twist) and not self.places and self._way:
-            self._leave()
+        if any(request.twist) and not self.places and self._edge.way:
+            self._edge.leave(self.obstacles.found)
         # Where there was an edge, the ground may be missing once more.
-        return grant.at_most(1.0) if self._again and self._since < _CAREFUL else grant
-
-    def _leave(self) -> None:
-        """Grant all twists from now on, and remember where the edge is."""
-        self._left = 0j if self._way == self.obstacles.found else self._way
-        self._way, self._since = 0j, 0.0
+        return grant.at_most(1.0) if self._again and self._edge.since < _CAREFUL else grant
 
 
 def _tips(search: Search, deep: float, *, held: bool) -> bool:
     """Return whether a robot tips towards a foot without contact; held by the others, only if it sinks or leans far."""
     unheld = not held and search.sunk > -_LIFTS and search.depth + max(search.sunk, 0.0) > deep
     return search.sunk > deep or unheld or min(search.leans, search.depth) > deep
-
-
-def _way(off: complex, rest: complex) -> complex:
-    """Return the direction of the way of a foot from its rest foothold, or of that where it is there."""
-    return off / abs(off) if abs(off) > _OFF else rest / abs(rest)
