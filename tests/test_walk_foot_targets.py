@@ -35,6 +35,20 @@ def in_heading_frame(controller, leg):
     return np.array([np.cos(yaw) * off[0] + np.sin(yaw) * off[1], np.cos(yaw) * off[1] - np.sin(yaw) * off[0], off[2]])
 
 
+@pytest.mark.parametrize("body", [(0.03, 0.0), (0.0, 0.02)])
+def test_the_body_goes_over_the_other_feet_wherever_it_was_commanded_before(body):
+    places = []
+    for x, y in ((0.0, 0.0), body):
+        controller = WalkController(load_robot("strider"), Gait.named("wave"))
+        pose = (x, y, 0.0, 0.0, 0.0, 0.0)
+        walk(controller, Command(body=pose, foot_targets={0: (0.25, 0.2, 0.08)} if x + y == 0.0 else None), 4)
+        # A leg that returns to the gait meanwhile leaves no correction.
+        walk(controller, Command(body=pose, foot_targets={0: (0.25, 0.2, 0.08)}), 6)
+        places.append(np.array(controller.body.position[:2]))
+    assert np.abs(places[0]).max() > 0.005
+    np.testing.assert_allclose(*places, atol=0.0101)
+
+
 @pytest.mark.no_cover
 def test_a_foot_follows_its_target_while_the_other_legs_walk():
     controller = WalkController(load_robot("strider"), Gait.named("wave"))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import cmath
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -34,7 +35,8 @@ class CommandIntake:
     def __init__(self, robot: Robot, transitions: TransitionExecutor) -> None:
         self._robot, self._transitions = robot, transitions
         self._last: Command | None = None
-        self._shifted_for: tuple[int, ...] = ()
+        # Legs, gait and body pose for which the shift is.
+        self._shifted_for: tuple[object, ...] = ()
         self._shift = 0j
 
     def accept(self, command: Command, angles: Float[np.ndarray, "legs 3"]) -> None:
@@ -66,10 +68,14 @@ class CommandIntake:
     def _correction(self, excluded: tuple[int, ...], angles: Float[np.ndarray, "legs 3"]) -> tuple[float, ...]:
         """Return the correction of the body pose for legs that bear no load."""
         if not excluded:
+            self._shifted_for = ()
             return _NO_MOTION
-        if excluded != self._shifted_for:
-            com = centre_of_mass(self._robot, angles)
-            sets = support_sets(self._transitions.scheduler.requested.gait, excluded)
-            shift = best_body_shift(self._transitions.footholds.new_rest, complex(com[0], com[1]), sets)
-            self._shifted_for, self._shift = excluded, shift
+        requested = self._transitions.scheduler.requested
+        shifts_for = excluded, requested.gait, requested.body
+        if shifts_for != self._shifted_for:
+            (x, y, _), sets = centre_of_mass(self._robot, angles).tolist(), support_sets(requested.gait, excluded)
+            centre = cmath.exp(1j * requested.body[5]) * complex(x, y)
+            # Of a body in the middle of its feet, from where all directions cost as much reach.
+            best = best_body_shift(self._transitions.footholds.new_rest, centre, sets)
+            self._shifted_for, self._shift = shifts_for, best - complex(*requested.body[:2])
         return (self._shift.real, self._shift.imag, 0.0, 0.0, 0.0, 0.0)
