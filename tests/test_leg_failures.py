@@ -142,6 +142,35 @@ def test_contacts_tell_of_the_legs_that_are_left_too(touches, failed):
     assert controller.leg_failures.failed == failed
 
 
+def test_joint_angles_alone_tell_of_legs_that_fail():
+    controller = tarsus.RobotController(STRIDER)
+    for tick in range(250):
+        angles = np.array(controller.output.angles)
+        angles[3, 1] += 0.8 * (tick > 150)
+        controller.step((0.0, 0.0, 0.0), 0.01, tarsus.SensorReadings(joint_angles=angles))
+    assert controller.leg_failures.failed == {3: 1}
+    assert not controller._activity.controller.feels_ground
+
+
+def test_a_leg_that_is_to_be_used_again_has_failed_once_it_does_not_follow_anew():
+    monitor = ServoMonitor(UNKNOWN)
+
+    def found_after(ticks, off):
+        for tick in range(ticks):
+            look(monitor, np.zeros((6, 3)), [(0.0, 0.8 * off, 0.0), *[(0.0, 0.0, 0.0)] * 5])
+            if monitor.failed:
+                return tick
+        return None
+
+    first = found_after(400, off=True)
+    assert 0 < first < 100
+    for _ in range(200):
+        look(monitor, np.zeros((6, 3)), [(0.0, 0.8, 0.0), *[(0.0, 0.0, 0.0)] * 5])
+    del monitor.failed[0]
+    assert found_after(200, off=False) is None
+    assert found_after(400, off=True) >= first - 10
+
+
 def test_only_legs_and_joints_that_there_are_can_have_failed():
     failed = tarsus.RobotController(STRIDER).leg_failures.failed
     with pytest.raises(tarsus.InputError, match="failed: the robot has no leg 6; its legs are 0 to 5"):

@@ -98,6 +98,8 @@ class ServoMonitor:
         self._commands: deque[tuple[float, Float[np.ndarray, "legs 3"]]] = deque()
         self._span = 0.0
         self._evidence: Float[np.ndarray, "2 legs 3"] | None = None
+        # Legs that have been found.
+        self._found = set[int]()
         # What was measured and commanded, since joints were last looked at for whether they are stuck.
         self._compared: list[tuple[_Measured, Float[np.ndarray, "legs 3"]]] = []
         self._time, self._since = 0.0, 0.0
@@ -118,7 +120,7 @@ class ServoMonitor:
         commands = self._commands
         commands.append((dt, commanded))
         self._span += dt
-        if self._span > _LAG + dt:
+        while self._span > _LAG + dt:
             self._span -= commands.popleft()[0]
         if valid.joint_angles is None:
             return
@@ -132,6 +134,11 @@ class ServoMonitor:
     ) -> None:
         """Change the evidence against joints by their errors."""
         last, self._last = self._last or measured, measured
+        for leg in self._found - self.failed.keys():
+            # It is to be used again: what has told against it does not count any more.
+            self._found.discard(leg)
+            if self._evidence is not None:
+                self._evidence[:, leg] = 0.0
         stuck = self._stuck(measured, commanded, dt)
         if self._evidence is not None:
             self._evidence *= 0.5 ** (dt / _MEMORY)
@@ -161,6 +168,7 @@ class ServoMonitor:
             self._evidence[1] += _ONCE * stuck
         for _, leg, joint in np.argwhere(self._evidence > _FAILED_AFTER).tolist():
             self.failed.setdefault(leg, joint)
+            self._found.add(leg)
 
     def _torque(self, torques: _Measured | None, leg: int, joint: int) -> float:
         """Return the measured torque of a joint over the stall torque of its servo; NaN where it is unknown."""

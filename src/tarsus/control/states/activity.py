@@ -9,6 +9,7 @@ import numpy as np
 from tarsus.control.command import Command
 from tarsus.control.limitation import Limitation
 from tarsus.control.readings import SensorReadings, ValidReadings
+from tarsus.control.sensing.validation import ReadingsValidator
 from tarsus.control.sequence import MotionSequence, SequencePlayer, SequenceSample
 from tarsus.control.startup import fold, sit_down
 from tarsus.control.states.robot_state import RobotState
@@ -87,17 +88,18 @@ class Walking:
     Attributes
     ----------
     measured : ValidReadings
-        The readings of the last tick, where it felt the ground.
+        The readings of the last tick.
     """
 
     def __init__(self, controller: WalkController) -> None:
         self.controller, self.measured = controller, ValidReadings()
+        self._validator = ReadingsValidator(controller.robot)
 
     def step(self, command: Command, dt: float, readings: SensorReadings | None) -> None:
         """Advance by one tick."""
         felt = readings if readings is not None and readings.has_ground_feedback else None
         self.controller.step(command, dt, readings=felt)
-        self.measured = ValidReadings() if felt is None else self.controller.measured
+        self.measured = self._validator.validate(readings, dt) if felt is None else self.controller.measured
 
     @property
     def gait(self) -> Gait:
