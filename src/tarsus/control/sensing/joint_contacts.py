@@ -26,15 +26,15 @@ _CONTACT, _STANDS, _OBSTACLE = 0.12, -0.02, 0.3
 # Share of the torque that drives a joint by which the expected one may be wrong.
 _UNSURE = 0.1
 # From a command to the servo's effect: at first, and at most [s]; how fast it, the mean of free swings and the load
-# are learnt, a tick; and the square of joint speeds below which that tells little of it [rad^2/s^2].
-_LAG, _LONGEST_LAG, _RATE, _MEAN_RATE, _SLOW = 0.005, 0.1, 0.02, 0.05, 2.0
+# are learnt [1/s]; and the square of joint speeds below which that tells little of it [rad^2/s^2].
+_LAG, _LONGEST_LAG, _RATE, _MEAN_RATE, _SLOW = 0.005, 0.1, 2.0, 5.0, 2.0
 # Torques left over in free swing, over the load, below which servos are familiar and above which they are not; how
 # much faster these are learnt.
 _FAMILIAR, _STRANGE, _FASTER = 0.12, 0.2, 3.0
 # Load of all legs above which contacts are known, over weight times length of femur and tibia.
 _LEAST_LOAD = 0.1
-# Steps of integration a tick, and ticks whose expected angles are kept.
-_STEPS, _KEPT = 4, 25
+# Steps of integration a tick, and for how long expected angles are kept [s].
+_STEPS, _KEPT = 4, 0.25
 
 
 class JointContacts:
@@ -75,7 +75,7 @@ class JointContacts:
         self._columns = springs.stall_torque[:, 1] / stiffness, springs.dead_band[:, 1], stiffness
         # Of each femur: what a tick needs; angle, speed and target; expected angles and torques.
         self._tick, self._servos, self._state = 0.0, list[tuple[float, ...]](), list[tuple[float, float, float]]()
-        self._expected: deque[list[tuple[float, float]]] = deque(maxlen=_KEPT)
+        self._expected = deque[list[tuple[float, float]]]()
         longest = float((lengths + np.asarray(robot.geometry.tibia)).max())
         self._least = _LEAST_LOAD * known_weight(robot) * longest
         self.lag, self._load, self._left = _LAG, 0.0, 0.0
@@ -106,10 +106,10 @@ class JointContacts:
         stands, phases = state.down.tolist(), state.swing_phase.tolist()
         free = [leg for leg, on in enumerate(stands) if not on and _CLEAR < phases[leg] < _DOWNWARD]
         if free:
-            self._learn(free, off, [(newer[leg] - older[leg]) / dt for leg in free])
+            self._learn(free, off, [(newer[leg] - older[leg]) / dt for leg in free], dt)
         load = sum(torque for torque, on in zip(off, stands, strict=True) if on)
         if load > self._load / 2:
-            self._load += _MEAN_RATE * (load - self._load)
+            self._load += _MEAN_RATE * dt * (load - self._load)
         self._familiar = self._left < (_STRANGE if self._familiar else _FAMILIAR) * max(self._load, self._least)
         if self._load < self._least or not self._familiar:
             return None
@@ -120,16 +120,16 @@ class JointContacts:
             touching.append((abs(torque) if rising else torque) > least + _UNSURE * abs(drive))
         return touching
 
-    def _learn(self, free: list[int], off: list[float], speeds: list[float]) -> None:
+    def _learn(self, free: list[int], off: list[float], speeds: list[float], dt: float) -> None:
         """Learn lag and mean torque of legs that swing freely, at these speeds of their femurs [rad/s]."""
         # The further it is off, the less is it a familiar servo that is learnt of. Of another one all is learnt: a lag
         # that is far from the first guess would never be found.
-        most, rate = _CONTACT * max(self._load, self._least), _RATE if self._familiar else _FASTER * _RATE
+        most, rate = _CONTACT * max(self._load, self._least), dt * (_RATE if self._familiar else _FASTER * _RATE)
         product = square = 0.0
         for leg, speed in zip(free, speeds, strict=True):
             usual = off[leg] / (1 + (off[leg] / most) ** 2) if self._familiar else off[leg]
             product, square = product + usual / self._stiffness[leg] * speed, square + speed * speed
-            self._mean[leg] += _MEAN_RATE * usual
+            self._mean[leg] += _MEAN_RATE * dt * usual
         self.lag = min(max(self.lag - rate * product / (square + _SLOW), 0.0), _LONGEST_LAG)
         self._left += rate * (sum(abs(off[leg]) for leg in free) / len(free) - self._left)
 
@@ -151,3 +151,5 @@ class JointContacts:
             self._state.append((angle, speed, target))
             expected.append((angle, stiffness * (target - angle)))
         self._expected.append(expected)
+        while len(self._expected) * dt > _KEPT + dt / 2:
+            self._expected.popleft()

@@ -12,13 +12,14 @@ __all__ = ["USUAL_LAG", "SwingMonitor"]
 USUAL_LAG = 0.03
 """Lag of the joints of usual servos behind their commands [s]."""
 
-# Angle by which a joint is behind that is stopped [rad], besides so many times the usual one; how fast that is learnt.
-_BEHIND, _TIMES, _MEAN_RATE = 0.02, 3.0, 0.01
-# Longest lag of a joint, from its command to the reading [s]; how fast it is learnt, a tick; and the square of joint
+# Angle by which a joint is behind that is stopped [rad], besides so many times the usual one; how fast that is learnt
+# [1/s].
+_BEHIND, _TIMES, _MEAN_RATE = 0.02, 3.0, 1.0
+# Longest lag of a joint, from its command to the reading [s]; how fast it is learnt [1/s]; and the square of joint
 # speeds below which they tell little of it [rad^2/s^2].
-_LONGEST_LAG, _RATE, _SLOW = 0.12, 0.05, 0.5
-# How fast the mean lag follows, a tick: the first guess, the longest one, should not count.
-_LAG_RATE = 0.003
+_LONGEST_LAG, _RATE, _SLOW = 0.12, 5.0, 0.5
+# How fast the mean lag follows [1/s]: the first guess, the longest one, should not count.
+_LAG_RATE = 0.3
 
 
 class SwingMonitor:
@@ -54,9 +55,9 @@ class SwingMonitor:
             if still and behind * speed > (_BEHIND + _TIMES * usual) * abs(speed):
                 stopped.append(leg)
             else:
-                usual += _MEAN_RATE * (abs(behind) - usual)
-                lag += _RATE * behind * speed / (speed * speed + _SLOW)
+                usual += _MEAN_RATE * dt * (abs(behind) - usual)
+                lag += _RATE * dt * behind * speed / (speed * speed + _SLOW)
                 lag = min(max(lag, 0.0), _LONGEST_LAG)
-                self.lag += _LAG_RATE * (lag - self.lag)
+                self.lag += _LAG_RATE * dt * (lag - self.lag)
         self._lag, self._usual = lag, usual
         return stopped
