@@ -686,6 +686,18 @@ def test_a_robot_that_its_feet_do_not_hold_tips_where_a_foot_has_lost_its_ground
     assert tips(touching=()) is None
 
 
+@pytest.mark.parametrize("before", [(), ((0.0, 0.1), None), (None, None)])
+def test_an_attitude_that_is_missing_for_a_tick_tips_no_robot_that_leans(before):
+    contacts = FootContacts(6)
+    contacts.step([True] * 6, [True] * 6, 0.02)
+    if before:
+        contacts.find_open(STANDING, before[0], 0.02)
+    contacts.step([False, *[True] * 5], [True] * 6, 0.02)
+    for tilt in (*before[1:], (0.0, 0.1), (0.0, 0.11)):
+        contacts.find_open(STANDING, tilt, 0.02)
+    assert contacts.sunk[0] == pytest.approx(0.01 * REST[0].real)
+
+
 def test_a_walk_that_tips_stops_backs_off_and_says_so():
     missing = stepped(MissingGround(NAMES), [], stands=[True] * 6, lost=5)
     assert missing.pace == 0.0

@@ -95,6 +95,8 @@ class FootContacts:
         self.lifted, self.standing, self.age = [False] * legs, [True] * legs, 0.0
         self._estimated = False
         self._unheld, self._tilt = 0.0, (0.0, 0.0)
+        # The last tilt that was measured, and that of each foot when it lost its contact [rad].
+        self._last: RollPitch | None = None
         self._tilts, self.sunk = [(0.0, 0.0)] * legs, [0.0] * legs
         self._without, self._evidence, self._settled, self._searched = ([0.0] * legs for _ in range(4))
 
@@ -161,10 +163,12 @@ class FootContacts:
             Time since the last tick [s].
         """
         shaken = any(on and 0.0 < time <= _GRACE for on, time in zip(footing.down, self._without, strict=True))
+        first, self._last = self._last is None, tilt or self._last
+        last = self._last or (0.0, 0.0)
         for leg, on in enumerate(footing.down):
-            if self._without[leg] <= 0.0 or tilt is None:
-                self._tilts[leg] = tilt or (0.0, 0.0)
-            self.sunk[leg] = sunk_at(footing.places[leg], tilt or (0.0, 0.0), self._tilts[leg])
+            if first or self._without[leg] <= 0.0:
+                self._tilts[leg] = last
+            self.sunk[leg] = sunk_at(footing.places[leg], last, self._tilts[leg])
             if on and shaken and self._without[leg] > _GRACE:
                 lifts = 1.0 if tilt is None else -self.sunk[leg] / _LIFTS
                 self._evidence[leg] += dt * min(lifts, _MOST_LIFT) * (lifts >= 1.0)
