@@ -12,7 +12,7 @@ from tarsus.control.pose.posture_feedback import BodyMove, PostureFeedback
 from tarsus.control.readings import SensorReadings, ValidReadings
 from tarsus.control.sensing.contact_estimator import ContactEstimator
 from tarsus.control.sensing.foot_loads import FootLoads
-from tarsus.control.sensing.leg_odometry import LegOdometry
+from tarsus.control.sensing.leg_odometry import CommandedMotion, LegOdometry
 from tarsus.control.sensing.validation import ReadingsValidator
 from tarsus.control.terrain.foot_contacts import FootContacts
 from tarsus.control.terrain.reach import Reach
@@ -284,16 +284,33 @@ def test_on_rough_ground_cycles_get_longer_feet_closer_and_fast_walks_slower(spe
     )
 
 
+# A walk with 0.1 m/s, looked at each 10 ms.
+FORWARD = CommandedMotion(velocity=0.1 + 0j, moved=0.001 + 0j, turned=0.0, yaw=0.0)
+
+
 def test_odometry_makes_up_for_what_the_legs_lose():
     odometry = LegOdometry(STRIDER)
     angles = WalkController(STRIDER).angles
     still = ValidReadings(joint_angles=angles.tolist())
     for _ in range(50):
-        correction = odometry.step(still, range(6), 0.1 + 0j, 0.01, yaw=0.0)
+        correction = odometry.step(still, range(6), FORWARD, 0.01)
     # Legs that stand still: all of the way is lost, and the correction is at its bound.
     assert correction == pytest.approx(0.025)
-    assert odometry.step(ValidReadings(), range(6), 0.1 + 0j, 0.01, yaw=0.0) == 0j
+    assert odometry.step(ValidReadings(), range(6), FORWARD, 0.01) == 0j
     assert odometry.behind == 0j
+
+
+def test_a_robot_that_is_carried_has_lost_no_way_and_slips_no_more():
+    odometry, walk = LegOdometry(STRIDER), WalkController(STRIDER)
+    for forward in (0.0, 0.01):
+        feet = np.array(walk.feet)
+        feet[0, 0] += forward
+        angles = np.asarray(tarsus.inverse_kinematics(STRIDER, feet, walk.body).angles).tolist()
+        odometry.step(ValidReadings(joint_angles=angles), range(6), FORWARD, 0.01)
+    assert odometry.limitations
+    odometry.forget()
+    assert not odometry.limitations
+    assert odometry.step(ValidReadings(joint_angles=angles), range(6), FORWARD, 0.01) == 0j
 
 
 def test_the_odometry_of_a_tilted_body_is_over_the_ground():
@@ -302,7 +319,7 @@ def test_the_odometry_of_a_tilted_body_is_over_the_ground():
         body = tarsus.Pose.from_rpy(0.1, -0.2, 0.0, (0.001 * tick, 0.0, float(walk.body.position[2])))
         angles = np.asarray(tarsus.inverse_kinematics(STRIDER, walk.feet, body).angles)
         valid = ValidReadings(joint_angles=angles.tolist(), attitude=(0.1, -0.2))
-        odometry.step(valid, range(6), 0.1 + 0j, 0.01, yaw=0.0)
+        odometry.step(valid, range(6), FORWARD, 0.01)
     # Balls that do not roll as the legs turn are 2 % of the way; in the frame of the body it would go aside by as much.
     assert abs(odometry.behind) < 6e-4
     assert abs(odometry.behind.imag) < 2e-5
@@ -317,7 +334,7 @@ def test_a_foot_that_slides_is_told_by_the_others():
         feet[0, 0] += 0.0005
         angles = tarsus.inverse_kinematics(STRIDER, feet, moved).angles
         valid = ValidReadings(joint_angles=np.asarray(angles).tolist())
-        odometry.step(valid, range(6), 0.1 + 0j, 0.01, yaw=0.002 * tick)
+        odometry.step(valid, range(6), FORWARD._replace(yaw=0.002 * tick), 0.01)
     assert odometry.slip[0] == max(odometry.slip)
     # A sixth of a foot's slip is taken for motion of the body, and some for its turn.
     assert 0.025 < odometry.slip[0] < 0.05
@@ -328,7 +345,7 @@ def test_a_foot_that_slides_is_told_by_the_others():
     assert found.leg == "front left"
     assert found.text().startswith("ground: 3")
     assert found.text().endswith("mm/s, bound 30 mm/s; front left: the foot slips")
-    odometry.step(valid, [0, 1], 0.1 + 0j, 0.2, yaw=0.0)
+    odometry.step(valid, [0, 1], FORWARD, 0.2)
     assert max(odometry.slip) == 0.0
 
 

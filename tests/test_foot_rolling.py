@@ -12,7 +12,7 @@ from tarsus.control.command import Command
 from tarsus.control.pose.foot_rolling import FootRolling
 from tarsus.control.readings import ValidReadings
 from tarsus.control.robot_controller import RobotController
-from tarsus.control.sensing.leg_odometry import LegOdometry
+from tarsus.control.sensing.leg_odometry import CommandedMotion, LegOdometry
 from tarsus.control.walk.joint_solver import JointSolver
 from tarsus.control.walk_controller import WalkController
 from tarsus.gait.gait import Gait
@@ -153,9 +153,10 @@ def test_odometry_knows_that_balls_roll():
     rolling, sliding = LegOdometry(robot), LegOdometry(point_feet("makeyourpet"))
     w = WalkController(robot)
     feet, angles, position = w.feet, w.angles, w.body.position
+    commanded = CommandedMotion(velocity=1j * speed, moved=1j * speed * dt, turned=0.0, yaw=0.0)
     for _ in range(40):
         for odometry in (rolling, sliding):
-            odometry.step(ValidReadings(joint_angles=angles.tolist()), range(6), speed * 1j, dt, yaw=0.0)
+            odometry.step(ValidReadings(joint_angles=angles.tolist()), range(6), commanded, dt)
         # The body moves sideways over feet that roll.
         position = position + np.array([0, speed * dt, 0])
         before, step = angles, np.zeros((6, 3))

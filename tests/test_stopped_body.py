@@ -34,7 +34,7 @@ class Pole:
         spec.worldbody.add_geom(name="ground 1", **box)
 
 
-def pushed(force, tilt=(0.0, 0.0), velocity=0.1 + 0j, seconds=5.0, torques=True):
+def pushed(force, tilt=(0.0, 0.0), velocity=0.1 + 0j, seconds=5.0, torques=True, yaw=0.0):
     """Return what is found while three feet push across their legs; the torques of a fourth one are unknown."""
     body, joints = StoppedBody(STRIDER), np.full((6, 3), np.nan)
     for leg in (0, 2, 4):
@@ -44,7 +44,7 @@ def pushed(force, tilt=(0.0, 0.0), velocity=0.1 + 0j, seconds=5.0, torques=True)
     given = [None if np.isnan(row).any() else tuple(row) for row in joints] if torques else None
     for _ in range(round(seconds / DT)):
         measured = ValidReadings(joint_angles=ANGLES.tolist(), torques=given, attitude=tilt)
-        body.step(measured, [0, 2, 4, 5], velocity, DT)
+        body.step(measured, [0, 2, 4, 5], velocity, DT, yaw=yaw)
     return body
 
 
@@ -71,6 +71,13 @@ def test_what_the_body_pushes_against_refuses_the_way_there_until_another_is_tak
     assert asked(body, 0.0, 0.0, 0.0).fraction == 1.0
     assert asked(body, 0.1, 0.0, 0.0).fraction == 0.0
     assert asked(body, 0.0, 0.1, 0.0).fraction == 1.0
+    assert asked(body, 0.1, 0.0, 0.0).fraction == 1.0
+
+
+def test_the_way_of_a_body_that_is_turned_against_its_heading_is_the_commanded_one():
+    # Its own x axis is along y of the heading frame.
+    body = pushed(0.3 * WEIGHT, velocity=0.1j, yaw=np.pi / 2)
+    assert asked(body, 0.0, 0.1, 0.0).fraction == 0.0
     assert asked(body, 0.1, 0.0, 0.0).fraction == 1.0
 
 

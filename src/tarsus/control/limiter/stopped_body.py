@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import cmath
 import math
 from collections.abc import Sequence
 
@@ -44,7 +45,9 @@ class StoppedBody:
         self._mounts: list[complex] = (robot.geometry.mount_x + 1j * robot.geometry.mount_y).tolist()
         self._solver = ScalarSolver(robot)
 
-    def step(self, measured: ValidReadings, bears: Sequence[int], velocity: complex, dt: float) -> None:
+    def step(
+        self, measured: ValidReadings, bears: Sequence[int], velocity: complex, dt: float, *, yaw: float = 0.0
+    ) -> None:
         """Take in joint angles and torques.
 
         Parameters
@@ -54,7 +57,9 @@ class StoppedBody:
         bears : sequence of int
             Legs whose feet bear load.
         velocity, dt : complex, float
-            Commanded velocity of the body along its own axes [m/s]; time since the last tick [s].
+            Commanded velocity of the body in the heading frame [m/s]; time since the last tick [s].
+        yaw : float
+            Of the body in the heading frame [rad].
         """
         push, angles, torques = 0.0, measured.joint_angles, measured.torques
         roll, pitch = measured.attitude or (0.0, 0.0)
@@ -65,7 +70,7 @@ class StoppedBody:
                 torque = torques[leg]
                 if angles[leg] is not None and torque is not None:
                     force -= 1j * torque[0] / (complex(*feet[leg][:2]) - self._mounts[leg]).conjugate()
-            push = (force * velocity.conjugate()).real / (self._weight * abs(velocity))
+            push = (force * cmath.exp(1j * yaw) * velocity.conjugate()).real / (self._weight * abs(velocity))
         self.push += min(dt / _TIME, 1.0) * (push - self.push)
         self._time = (self._time + dt) * (self.push > _STOPPED)
         if self._time > _LASTS:

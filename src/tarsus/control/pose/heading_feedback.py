@@ -14,6 +14,8 @@ _GAIN, _MOST, _CHANGE, _FARTHEST = 1.0, 0.15, 0.5, 0.5
 _MEMORY, _LEARNS = 10.0, 1.0
 # A body at rest turns more slowly than this, offset included [rad/s].
 _STILL = 0.02
+# How long rates may be missing until what is made up for is forgotten [s].
+_HOLDS = 0.3
 
 
 class HeadingFeedback:
@@ -28,41 +30,38 @@ class HeadingFeedback:
     """
 
     def __init__(self) -> None:
-        self.behind, self.rate, self._offset = 0.0, 0.0, 0.0
-        self._yaw: float | None = None
+        self.behind, self.rate, self._offset, self._unmeasured = 0.0, 0.0, 0.0, 0.0
 
-    def step(self, valid: ValidReadings, commanded: float, dt: float, *, yaw: float, rests: bool) -> None:
+    def step(self, valid: ValidReadings, commanded: float, dt: float, *, rests: bool) -> None:
         """Take in angular rates.
 
         Parameters
         ----------
         valid : ValidReadings
-            The readings; without angular rates, nothing is made up for.
+            The readings; without angular rates for longer than a moment, nothing is made up for.
         commanded, dt : float, float
-            Rate at which the walk turns [rad/s]; time since the last step [s].
-        yaw : float
-            Of the body in the heading frame, as commanded [rad]: turning there is no error.
+            Rate at which the body is to turn, by the walk and by its pose [rad/s]; time since the last step [s].
         rests : bool
             Whether the robot is to stand still: it does not turn then, and what is measured is the offset of the rates.
         """
-        turned, self._yaw = 0.0 if self._yaw is None else yaw - self._yaw, yaw
         if valid.angular_rates is None:
-            self.behind = self.rate = 0.0
+            self._unmeasured += dt
+            if self._unmeasured > _HOLDS or rests:
+                self.forget()
             return
+        self._unmeasured = 0.0
         (roll, pitch), (_, about_y, about_z) = valid.attitude or (0.0, 0.0), valid.angular_rates
-        measured = (math.sin(roll) * about_y + math.cos(roll) * about_z) / math.cos(pitch) - turned / dt
+        faster = (math.sin(roll) * about_y + math.cos(roll) * about_z) / math.cos(pitch) - commanded
         if rests:
             self.rate, self.behind = 0.0, self.behind * (1 - dt / _MEMORY)
-            if abs(measured) < _STILL:
-                self._offset += min(dt / _LEARNS, 1.0) * (measured - self._offset)
+            if abs(faster) < _STILL:
+                self._offset += min(dt / _LEARNS, 1.0) * (faster - self._offset)
             return
-        measured -= self._offset
-        behind = (self.behind + (commanded - measured) * dt) * (1 - dt / _MEMORY)
+        behind = (self.behind - (faster - self._offset) * dt) * (1 - dt / _MEMORY)
         self.behind = min(max(behind, -_FARTHEST), _FARTHEST)
         wanted = min(max(_GAIN * self.behind, -_MOST), _MOST)
         self.rate += min(max(wanted - self.rate, -_CHANGE * dt), _CHANGE * dt)
 
     def forget(self) -> None:
-        """Forget what is missing, and how the body was turned: the robot is carried."""
+        """Forget what is missing: the robot is carried."""
         self.behind = self.rate = 0.0
-        self._yaw = None

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import cmath
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -17,7 +17,7 @@ from tarsus.robot.robot import Robot
 if TYPE_CHECKING:
     from jaxtyping import Float
 
-__all__ = ["LegOdometry"]
+__all__ = ["CommandedMotion", "LegOdometry"]
 
 # Speed that makes up for what is missing, over that [1/s], and its greatest share of the commanded speed.
 _GAIN, _MOST = 1.5, 0.25
@@ -27,6 +27,25 @@ _MEMORY = 0.3
 _SLIPS, _CAUSE = 0.03, "the foot slips"
 # Time over which slip is averaged [s], and the fewest feet of which some may slip against others.
 _SLIP_TIME, _LEAST_FEET = 0.2, 3
+
+
+class CommandedMotion(NamedTuple):
+    """How the body is to move over its standing feet since the last look, in the heading frame.
+
+    Attributes
+    ----------
+    velocity : complex
+        Velocity of the walk [m/s].
+    moved, turned : complex, float
+        Way of the body [m], with its pose and sway; by how much the heading frame turns [rad].
+    yaw : float
+        Of the body in the heading frame [rad].
+    """
+
+    velocity: complex
+    moved: complex
+    turned: float
+    yaw: float
 
 
 class LegOdometry:
@@ -62,7 +81,11 @@ class LegOdometry:
         kind, name = LimitationKind.GROUND, self._names[self.slip.index(slip)]
         return [Limitation(kind=kind, cause=_CAUSE, leg=name, granted=slip, bound=_SLIPS)] if slip > _SLIPS else []
 
-    def step(self, valid: ValidReadings, bears: Sequence[int], velocity: complex, dt: float, *, yaw: float) -> complex:
+    def forget(self) -> None:
+        """Forget what is missing, where the feet were, and that they slip: the robot is carried."""
+        self.behind, self._before, self.slip = 0j, {}, [0.0] * len(self.slip)
+
+    def step(self, valid: ValidReadings, bears: Sequence[int], commanded: CommandedMotion, dt: float) -> complex:
         """Return the velocity that makes up for what is missing, in the heading frame [m/s].
 
         Parameters
@@ -71,18 +94,17 @@ class LegOdometry:
             The readings; without the joint angles of all legs nothing is corrected.
         bears : sequence of int
             Legs whose feet bear load.
-        velocity, dt : complex, float
-            Commanded velocity of the body in the heading frame [m/s]; time since the last tick [s].
-        yaw : float
-            Of the body in the heading frame [rad].
+        commanded, dt : CommandedMotion, float
+            How the body is to move; time since the last look [s].
         """
         measured = [each for each in valid.joint_angles or () if each is not None]
         if len(measured) < len(self._mounts):
-            self.behind, self._before = 0j, {}
+            self.forget()
             return 0j
+        yaw, speed = commanded.yaw, abs(commanded.velocity)
         rotation = rotation_rows(*(valid.attitude or (0.0, 0.0)), yaw)
         feet = [complex(x, y) for x, y, _ in self._solver.feet(measured, rotation)]
-        before, self._before, over_feet = self._before, {}, dict[int, complex]()
+        before, self._before, over_feet, places = self._before, {}, dict[int, complex](), 0j
         for leg in bears:
             (mount_yaw, radius), (coxa, femur, tibia) = self._mounts[leg], measured[leg]
             direction = cmath.rect(1.0, mount_yaw + coxa)
@@ -93,13 +115,16 @@ class LegOdometry:
                 then, was = before[leg]
                 rolled = radius * (was - self._before[leg][1]) * direction * cmath.exp(1j * yaw)
                 over_feet[leg] = then - feet[leg] + rolled
+                places += (then + feet[leg]) / 2
         if over_feet:
             moved = sum(over_feet.values()) / len(over_feet)
             self._note_slip(feet, {leg: over - moved for leg, over in over_feet.items()}, dt)
-            most = abs(velocity) * _MEMORY
-            self.behind += velocity * dt - moved
+            # Feet whose middle is beside the body move aside under it as it turns.
+            passed = 1j * commanded.turned * places / len(over_feet)
+            most = speed * _MEMORY
+            self.behind += commanded.moved + passed - moved
             self.behind *= min(1.0, most / max(abs(self.behind), 1e-12))
-        wanted, most = _GAIN * self.behind, _MOST * abs(velocity)
+        wanted, most = _GAIN * self.behind, _MOST * speed
         return wanted * min(1.0, most / max(abs(wanted), 1e-12))
 
     def raised(self, legs: list[int], valid: ValidReadings, angles: Float[np.ndarray, "legs 3"]) -> dict[int, float]:

@@ -10,7 +10,7 @@ from tarsus.control.limiter.stopped_body import StoppedBody
 from tarsus.control.pose.heading_feedback import HeadingFeedback
 from tarsus.control.pose.posture_feedback import BodyMove, Levelling, PostureFeedback, PostureRates
 from tarsus.control.readings import RollPitch, ValidReadings
-from tarsus.control.sensing.leg_odometry import LegOdometry
+from tarsus.control.sensing.leg_odometry import CommandedMotion, LegOdometry
 from tarsus.control.terrain.foot_contacts import FootContacts
 from tarsus.control.terrain.ground_map import GroundMap
 from tarsus.control.terrain.reach import Reach
@@ -83,6 +83,8 @@ class BodyMotion:
         # What the body did when it was looked at, until it is turned by a newer attitude.
         self._move: BodyMove | None = None
         self.since, self._unmeasured = _PERIOD, 0.0
+        # Where in G the body was when it was looked at, the heading, and the yaw of the body in it.
+        self._before: tuple[complex, float, float] | None = None
 
     def see(self, attitude: RollPitch | None, state: GaitState, dt: float) -> None:
         """Take the measured attitude.
@@ -97,7 +99,7 @@ class BodyMotion:
         """
         self._unmeasured += dt
         if attitude is not None:
-            roll, pitch = state.posture.value[3:5].tolist()
+            roll, pitch = state.moved_posture[3:5].tolist()
             self.tilt, self._unmeasured = (attitude[0] - roll, attitude[1] - pitch), 0.0
         elif self.tilt is not None and self._unmeasured > _HOLDS:
             self.tilt = (0.0, 0.0) if self._unmeasured <= _TIMEOUT else None
@@ -156,11 +158,15 @@ class BodyMotion:
         over = (state.ground_height - state.elevation).tolist()
         bears = [leg for leg, on in enumerate(footing.down) if on and self.contacts.touches(leg)]
         self.reach.update(tick, rest, transitions.timing.stance_time)
+        velocity = complex(*state.twist.value[:2].tolist()) * pace
+        commanded, turning = self._commanded(state, velocity, dt)
         if not bears:
             self.rates, self.drift, self._move = PostureRates(0.0, (0.0, 0.0)), 0j, None
             self.heading.forget()
+            self.odometry.forget()
             return
-        self.ground.step([(places[leg], over[leg]) for leg in bears], self.tilt, state, dt, drift=self.drift)
+        feet, back = [(places[leg], over[leg]) for leg in bears], self.heading.rate
+        self.ground.step(feet, self.tilt, state, dt, drift=self.drift, turning=back)
         level = self.ground.plane.levelled(self.tilt)
         # The way back stays open without an attitude, too.
         if self.tilt is not None or self.slope.refuses:
@@ -168,13 +174,23 @@ class BodyMotion:
         if self.tilt is not None:
             self.stance.step(level, rest - self.stance.shift, self.roughness.drawn_in, walks=not rests)
         self._fit_height(state, over, footing.down, bears, dt)
-        velocity, yaw = complex(*state.twist.value[:2].tolist()) * pace, float(state.posture.value[5])
-        self.heading.step(valid, float(state.twist.value[2]) * pace, dt, yaw=yaw, rests=rests)
-        self.drift = self.stance.not_downhill(self.odometry.step(valid, bears, velocity, dt, yaw=yaw))
-        self.stopped.step(valid, bears, velocity * cmath.exp(-1j * yaw), dt)
+        self.heading.step(valid, turning, dt, rests=rests)
+        self.drift = self.stance.not_downhill(self.odometry.step(valid, bears, commanded, dt))
+        self.stopped.step(valid, bears, velocity, dt, yaw=commanded.yaw)
         margins = [(places[leg], over[leg] - (self.reach.lowest[leg] + self.lowered)) for leg in bears]
         self._move = BodyMove(velocity, margins, self.slope.refuses or rests, pace)
         self.rates = self._posture.rates(self.ground.plane, self.tilt, self._move)
+
+    def _commanded(self, state: GaitState, velocity: complex, dt: float) -> tuple[CommandedMotion, float]:
+        """Return how the body was to move since the last look, and how fast it was to turn [rad/s]."""
+        x, y, _, _, _, yaw, _ = state.moved_posture.tolist()
+        at, heading = complex(x, y), cmath.exp(1j * state.yaw)
+        now = state.origin + heading * at, state.yaw, yaw
+        (body, direction, yaw_before), self._before = self._before or now, now
+        turned, back = state.yaw - direction, self.heading.rate * dt
+        # The way in the heading frame halfway, and that of a body beside the place about which it turns back.
+        moved = (now[0] - body) / heading * cmath.exp(0.5j * turned) + 1j * back * at
+        return CommandedMotion(velocity, moved, turned + back, yaw), (turned + yaw - yaw_before) / dt
 
     def _fit_height(self, state: GaitState, over: list[float], down: list[bool], bears: list[int], dt: float) -> None:
         """Change the height of the body to one at which all legs reach the ground."""

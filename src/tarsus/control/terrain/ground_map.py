@@ -92,13 +92,20 @@ class GroundMap:
         if readings.ground is None or readings.ground is self._seen:
             return
         self.given, self._seen, age = True, readings.ground, readings.ground_age
-        (vx, vy, wz), (x, y, yaw) = state.twist.value.tolist(), state.posture.value[[0, 1, 5]].tolist()
+        (vx, vy, wz), (x, y, yaw) = state.twist.value.tolist(), state.moved_posture[[0, 1, 5]].tolist()
         self._middle = state.origin + cmath.exp(1j * state.yaw) * (complex(x, y) - complex(vx, vy) * age)
         self._axis = cmath.exp(1j * (state.yaw + yaw - wz * age))
         self._tie()
 
     def step(
-        self, feet: list[tuple[complex, float]], tilt: RollPitch | None, state: GaitState, dt: float, *, drift: complex
+        self,
+        feet: list[tuple[complex, float]],
+        tilt: RollPitch | None,
+        state: GaitState,
+        dt: float,
+        *,
+        drift: complex = 0j,
+        turning: float = 0.0,
     ) -> None:
         """Fit the plane to the standing feet, and tie the known heights to them.
 
@@ -112,14 +119,17 @@ class GroundMap:
             The gait state.
         dt : float
             Time since the last update [s].
-        drift : complex
-            Velocity with which they move backwards to make up for lost way, in the heading frame [m/s].
+        drift, turning : complex, float
+            Velocity with which they move backwards to make up for lost way, in the heading frame [m/s]; how fast the
+            body turns over them to make up for lost heading [rad/s].
         """
         (roll, pitch), places, heights = tilt or (0.0, 0.0), [foot for foot, _ in feet], [height for _, height in feet]
         self.plane = fitted_plane(places, heights, self.plane, min(_SLOPE_RATE * dt, 1.0))
         self._origin, self._turn, self._inclination = state.origin, cmath.exp(1j * state.yaw), complex(-pitch, roll)
         if self.given:
-            self._middle -= self._turn * drift * dt
+            back = cmath.exp(-1j * turning * dt)
+            self._middle = self._origin + (self._middle - self._origin) * back - self._turn * drift * dt
+            self._axis *= back
             self._feet = (on := np.array(places, dtype=complex)), self._rise(on) + heights
             self._tie()
 
