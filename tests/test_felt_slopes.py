@@ -9,12 +9,12 @@ import pytest
 from gait_robots import preset
 from tarsus.control.limitation import LimitationKind
 from tarsus.control.pose.posture_feedback import BodyMove, PostureFeedback
+from tarsus.control.pose.slope_stance import SlopeStance
 from tarsus.control.readings import SensorReadings
 from tarsus.control.robot_controller import RobotController
 from tarsus.control.terrain.reach import Reach
 from tarsus.control.terrain.roughness import GroundAdaptation
 from tarsus.control.terrain.slope_limit import SlopeLimit
-from tarsus.control.terrain.slope_stance import SlopeStance
 from tarsus.control.tick_state import TickState
 from tarsus.control.walk_controller import WalkController
 from tarsus.control.walk_state import WalkState

@@ -122,11 +122,11 @@ class WalkController:
         planner = TransitionPlanner(self.robot, limits, foot_distance=setup.foot_distance)
         stance = planner.initial_stance(setup, stance_width=stance_width, cycle_time=cycle_time)
         foot_targets, solver = FootTargets(self.robot), JointSolver(self.robot)
-        transitions = TransitionExecutor(stance, foot_targets)
-        state = GaitState.standing(stance.rest, transitions.pose.target)
-        time_scaling = TimeScaling(solver.angles(state), limits, self.robot.limits)
         adaptation = GroundAdaptation() if adaptation is None else adaptation
         body = BodyMotion(self.robot, levelling=levelling, adaptation=adaptation)
+        transitions = TransitionExecutor(stance, foot_targets, scale=body.reach.scale)
+        state = GaitState.standing(stance.rest, transitions.pose.target)
+        time_scaling = TimeScaling(solver.angles(state), limits, self.robot.limits)
         loads = FootLoads(self.robot, admittance)
         self._walk = WalkComponents(
             robot=self.robot,

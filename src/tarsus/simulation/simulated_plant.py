@@ -12,6 +12,7 @@ import numpy as np
 from tarsus.control.control_output import ControlOutput
 from tarsus.control.readings import SensorReadings
 from tarsus.errors import InputError, SimulationError
+from tarsus.kinematics.mass import STANDARD_GRAVITY, total_mass
 from tarsus.kinematics.pose import Pose
 from tarsus.representation import represented
 from tarsus.robot.robot import Robot, require_robot
@@ -83,7 +84,8 @@ class SimulatedPlant:
     MissingDataError
         If the mass of the body or of a link is unknown, or a servo for ``"catalogue"``.
     InputError
-        If the robot is a batch, a mass is too small to be simulated, or the seed is not a whole number from 0 on.
+        If the robot is a batch, a mass is too small to be simulated, no foot switch would close under the robot's
+        weight, or the seed is not a whole number from 0 on.
     TarsusError
         If MuJoCo is not installed.
     """
@@ -109,6 +111,7 @@ class SimulatedPlant:
         self.assumed = (*model_assumptions(robot), *self._table.assumed)
         self._mujoco = mujoco_module()
         self.mj_model = model(robot, terrain=self.terrain, servos=self.servos).compile()
+        _require_switches_that_close(self.sensors, robot)
         self.mj_data = self._mujoco.MjData(self.mj_model)
         data, joints = self.mj_data, 3 * robot.legs
         # Looking an array up in the engine's data takes longer than reading it.
@@ -330,6 +333,15 @@ def _checked(angles: Shaped[np.ndarray, "..."], legs: int) -> Shaped[np.ndarray,
         leg, joint = np.argwhere(~np.isfinite(angles))[0].tolist()
         raise InputError(f"the commanded angle of leg {leg}, joint {joint} is {angles[leg, joint]}; it must be finite")
     return flat
+
+
+def _require_switches_that_close(sensors: SensorSuite, robot: Robot) -> None:
+    switch, load = sensors.contacts, float(total_mass(robot)) * STANDARD_GRAVITY / robot.legs
+    if switch is not None and switch.threshold >= load:
+        raise InputError(
+            f"foot switches close at {switch.threshold:g} N, and each foot of a {robot.name} that stands bears "
+            f"{load:.3g} N: none would close; lighter ones: SensorSuite(contacts=FootSwitch(threshold={load / 4:.2g}))"
+        )
 
 
 def _stall_currents(robot: Robot) -> Float[np.ndarray, "legs 3"] | None:

@@ -1,1 +1,1 @@
-"""Speed limiters: each returns how much of the commanded twist, or of the walk's time rate, it allows."""
+"""Speed limiters: each returns how much of the commanded twist it allows."""

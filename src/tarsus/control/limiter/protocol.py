@@ -1,8 +1,7 @@
-"""What a speed limiter is: the two protocols, and the values that limiters take and return.
+"""What a twist limiter is: the protocol, and the values that limiters take and return.
 
-Twist limiters decide, one after the other, how much of the commanded twist is followed. Time rate limiters decide how
-fast the walk advances along its trajectories. A new limiter is a class with the one method of its protocol, and one
-line in the list of the walk controller.
+Twist limiters decide, one after the other, how much of the commanded twist is followed. A new one is a class with the
+one method of the protocol, and one line in the list of `tarsus.control.tick.limit`.
 """
 
 from __future__ import annotations

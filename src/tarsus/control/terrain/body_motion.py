@@ -9,6 +9,7 @@ from tarsus.control.limitation import Limitation, LimitationKind
 from tarsus.control.limiter.stopped_body import StoppedBody
 from tarsus.control.pose.heading_feedback import HeadingFeedback
 from tarsus.control.pose.posture_feedback import BodyMove, Levelling, PostureFeedback, PostureRates
+from tarsus.control.pose.slope_stance import SlopeStance
 from tarsus.control.readings import RollPitch, ValidReadings
 from tarsus.control.sensing.leg_odometry import CommandedMotion, LegOdometry
 from tarsus.control.terrain.foot_contacts import FootContacts
@@ -16,7 +17,6 @@ from tarsus.control.terrain.ground_map import GroundMap
 from tarsus.control.terrain.reach import Reach
 from tarsus.control.terrain.roughness import GroundAdaptation, Roughness
 from tarsus.control.terrain.slope_limit import SlopeLimit
-from tarsus.control.terrain.slope_stance import SlopeStance
 from tarsus.control.terrain.support import Footing
 from tarsus.control.tick_state import TickState
 from tarsus.control.transition.executor import TransitionExecutor
@@ -72,11 +72,12 @@ class BodyMotion:
     """
 
     def __init__(self, robot: Robot, *, levelling: Levelling | None, adaptation: GroundAdaptation) -> None:
-        self.contacts, self.ground = FootContacts(robot.legs), GroundMap()
         self.reach, self.odometry = Reach(robot), LegOdometry(robot)
         scale = self.reach.scale
+        self.contacts, self.ground = FootContacts(robot.legs, scale=scale), GroundMap(scale=scale)
         self._posture, self.roughness = PostureFeedback(levelling, scale=scale), Roughness(adaptation, scale=scale)
-        self.slope, self.stance, self.stopped = SlopeLimit(adaptation.friction), SlopeStance(robot), StoppedBody(robot)
+        self.slope, self.stance = SlopeLimit(adaptation.friction), SlopeStance(robot, scale=scale)
+        self.stopped = StoppedBody(robot)
         self.rates, self.drift, self.lowered = PostureRates(0.0, (0.0, 0.0)), 0j, 0.0
         self.tilt: RollPitch | None = None
         self.heading = HeadingFeedback()

@@ -24,6 +24,11 @@ class Edge:
 
     All are in the heading frame, and turn back as that turns.
 
+    Parameters
+    ----------
+    scale : float
+        By how much speeds are smaller than given, on short legs, 0 to 1.
+
     Attributes
     ----------
     way, left : complex
@@ -34,13 +39,14 @@ class Edge:
         The twist before any foot searched, by which it has met the edge [m/s, m/s, rad/s].
     """
 
-    def __init__(self) -> None:
+    def __init__(self, scale: float) -> None:
+        self._scale = scale
         self.way, self.left, self.since, self._yaw = 0j, 0j, 0.0, 0.0
         self.twist: Sequence[float] = (0.0, 0.0, 0.0)
 
     @property
     def _moves(self) -> bool:
-        return math.hypot(*self.twist[:2]) > _MOVES
+        return math.hypot(*self.twist[:2]) > self._scale * _MOVES
 
     @property
     def turns(self) -> bool:

@@ -73,8 +73,8 @@ class FootContacts:
 
     Parameters
     ----------
-    legs : int
-        Number of legs.
+    legs, scale : int, float
+        Number of legs; by how much lengths are smaller than given, on short legs, 0 to 1.
 
     Attributes
     ----------
@@ -90,10 +90,10 @@ class FootContacts:
         By how much the body has sunk at each foot by its tilt since that lost its contact [m].
     """
 
-    def __init__(self, legs: int) -> None:
+    def __init__(self, legs: int, *, scale: float = 1.0) -> None:
         self.estimator = ContactEstimator(legs)
         self.lifted, self.standing, self.age = [False] * legs, [True] * legs, 0.0
-        self._estimated = False
+        self._estimated, self._scale = False, scale
         self._unheld, self._tilt = 0.0, (0.0, 0.0)
         # The last tilt that was measured, and that of each foot when it lost its contact [rad].
         self._last: RollPitch | None = None
@@ -170,7 +170,7 @@ class FootContacts:
                 self._tilts[leg] = last
             self.sunk[leg] = sunk_at(footing.places[leg], last, self._tilts[leg])
             if on and shaken and self._without[leg] > _GRACE:
-                lifts = 1.0 if tilt is None else -self.sunk[leg] / _LIFTS
+                lifts = 1.0 if tilt is None else -self.sunk[leg] / (self._scale * _LIFTS)
                 self._evidence[leg] += dt * min(lifts, _MOST_LIFT) * (lifts >= 1.0)
         if tilt is not None:
             self._balance(footing, tilt, dt)
@@ -186,7 +186,7 @@ class FootContacts:
             return
         longest = max(missing, key=self._without.__getitem__)
         place = places[longest]
-        if self._unheld <= 0.0 or abs(sunk_at(place, tilt, self._tilt)) > _TIPS:
+        if self._unheld <= 0.0 or abs(sunk_at(place, tilt, self._tilt)) > self._scale * _TIPS:
             self._unheld, self._tilt = 0.0, tilt
         self._unheld += dt
         if self._unheld > _UNHELD and self._without[longest] > _NEVER:

@@ -66,11 +66,11 @@ def met_ground(
             continue
         leaves = missing.obstacles.leaves((complex(state.foothold[leg]) - state.origin) * turn - places[leg])
         if not leaves and _collides_again(
-            state, leg, side=contacts.feels(leg) and contacts.lifted[leg], stopped=leg in stopped
+            state, leg, side=contacts.feels(leg) and contacts.lifted[leg], stopped=leg in stopped, scale=reach.scale
         ):
             state = _trying_again(state, leg, missing, reach, _landed(state, leg, timing, pace))
             landed.append(leg)
-        elif phase > _LANDING or (pace < HALTING and _stands_below(state, leg, contacts)):
+        elif phase > _LANDING or (pace < HALTING and _stands_below(state, leg, contacts, scale=reach.scale)):
             # Contact that has not ceased since lift-off tells nothing: the foot lands where ground is expected.
             tells = contacts.lifted[leg] and not contacts.is_open(leg)
             if tells and not contacts.touches(leg):
@@ -85,7 +85,7 @@ def met_ground(
                     body.roughness.landed(min(off, max(off - sunk, 0.0)))
                 state = _landed(state, leg, timing, pace)
                 landed.append(leg)
-        elif (meets or leg in stopped) and not leaves and _collides(state, leg, contacts):
+        elif (meets or leg in stopped) and not leaves and _collides(state, leg, contacts, scale=reach.scale):
             body.roughness.collided()
             state = _rising_again(state, leg, _highest(state, leg, reach), timing, scale=reach.scale)
     return state, landed
@@ -124,25 +124,27 @@ def _landed(state: GaitState, leg: int, timing: StepTiming, pace: float) -> Gait
     return land(state, [leg])
 
 
-def _collides(state: GaitState, leg: int, contacts: FootContacts) -> bool:
+def _collides(state: GaitState, leg: int, contacts: FootContacts, *, scale: float) -> bool:
     """Return whether a foot that feels contact in the first half of its swing has met an obstacle."""
     # A contact is that of a moment ago, and the foot lags behind its command: it was lower.
     then = float(state.ground_height[leg]) - max(state.felt[leg].speed, 0.0) * (contacts.age + USUAL_LAG)
-    return state.felt[leg].drawn_back is None and then - float(state.start_height[leg]) > _LIFTED
+    return state.felt[leg].drawn_back is None and then - float(state.start_height[leg]) > scale * _LIFTED
 
 
-def _stands_below(state: GaitState, leg: int, contacts: FootContacts) -> bool:
+def _stands_below(state: GaitState, leg: int, contacts: FootContacts, *, scale: float) -> bool:
     """Return whether a foot on its way down has met ground no higher than it came from: it would lift the body."""
     meets = contacts.estimator.touching[leg] and contacts.lifted[leg] and state.felt[leg].speed < 0.0
-    return meets and state.swing_phase[leg] >= state.felt[leg].top_phase and not _collides(state, leg, contacts)
+    down = state.swing_phase[leg] >= state.felt[leg].top_phase
+    return meets and down and not _collides(state, leg, contacts, scale=scale)
 
 
-def _collides_again(state: GaitState, leg: int, *, side: bool, stopped: bool) -> bool:
+def _collides_again(state: GaitState, leg: int, *, side: bool, stopped: bool, scale: float) -> bool:
     """Return whether a foot that has risen after a collision has not got past the obstacle."""
     start, foot = state.felt[leg].drawn_back, complex(state.foot[leg])
-    if start is None or state.swing_phase[leg] <= state.felt[leg].top_phase or abs(state.foothold[leg] - foot) < _SHORT:
+    short = abs(state.foothold[leg] - foot) < scale * _SHORT
+    if start is None or state.swing_phase[leg] <= state.felt[leg].top_phase or short:
         return False
-    return stopped if abs(foot - start) > _DRAWN_BACK + _PAST else side
+    return stopped if abs(foot - start) > scale * (_DRAWN_BACK + _PAST) else side
 
 
 def _rising_again(state: GaitState, leg: int, highest: float, timing: StepTiming, *, scale: float) -> GaitState:
@@ -173,7 +175,7 @@ def _trying_again(state: GaitState, leg: int, missing: MissingGround, reach: Rea
     foot, goal = ((complex(places[leg]) - state.origin) / turn for places in (state.foot, state.foothold))
     top = min(height + reach.scale * _HIGHER, max(_highest(state, leg, reach), height))
     back = missing.stopped(leg, foot, goal)
-    slide = _DRAWS_BACK * turn * back / max(abs(back), 1e-9)
+    slide = reach.scale * _DRAWS_BACK * turn * back / max(abs(back), 1e-9)
     return after._replace(felt=_with(after.felt, leg, speed=0.0, acceleration=0.0, top=top, slide=slide))
 
 

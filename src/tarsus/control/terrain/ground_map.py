@@ -53,6 +53,11 @@ class GroundMap:
     So nothing is dead-reckoned for longer than from one reading to the next. Places and heights that are asked for are
     in the heading frame; where nothing is known, the ground is the plane of the standing feet.
 
+    Parameters
+    ----------
+    scale : float
+        By how much lengths are smaller than given, on short legs, 0 to 1.
+
     Attributes
     ----------
     plane : FootPlane
@@ -67,7 +72,8 @@ class GroundMap:
         Legs whose feet in the air cross a hole on their way.
     """
 
-    def __init__(self) -> None:
+    def __init__(self, *, scale: float = 1.0) -> None:
+        self._scale = scale
         self.plane, self.given, self.beside = FootPlane(), False, dict[int, complex]()
         self.holes, self.crossing = dict[int, complex](), set[int]()
         self._seen: GroundHeights | None = None
@@ -84,10 +90,8 @@ class GroundMap:
 
         Parameters
         ----------
-        readings : ValidReadings
-            The readings; the same heights as before, or None, tell nothing new.
-        state : GaitState
-            The gait state.
+        readings, state : ValidReadings, GaitState
+            The readings; the same heights as before, or None, tell nothing new; the gait state.
         """
         if readings.ground is None or readings.ground is self._seen:
             return
@@ -115,10 +119,8 @@ class GroundMap:
             The feet that bear load: where, and how high, in the heading frame [m].
         tilt : (roll, pitch) or None
             By how much the heading frame is tilted [rad].
-        state : GaitState
-            The gait state.
-        dt : float
-            Time since the last update [s].
+        state, dt : GaitState, float
+            The gait state; time since the last update [s].
         drift, turning : complex, float
             Velocity with which they move backwards to make up for lost way, in the heading frame [m/s]; how fast the
             body turns over them to make up for lost heading [rad/s].
@@ -182,17 +184,19 @@ class GroundMap:
         place : complex
             The place [m].
         """
-        return float(lowest_near(self.expected, np.array(place), within=_OFF)) if self.given else self.plane.at(place)
+        return (
+            float(lowest_near(self.expected, np.array(place), within=self._scale * _OFF))
+            if self.given
+            else self.plane.at(place)
+        )
 
     def choose(self, state: GaitState, reach: Reach, footholds: FootholdTransfer) -> None:
         """Choose footholds for feet that have lifted off, once in each swing.
 
         Parameters
         ----------
-        state : GaitState
-            The gait state.
-        reach : Reach
-            Strokes, and between which heights legs reach them.
+        state, reach : GaitState, Reach
+            The gait state; strokes, and between which heights legs reach them.
         footholds : FootholdTransfer
             How far from their rest footholds feet may be put down.
         """
@@ -234,7 +238,9 @@ class GroundMap:
         """
         if not self.given:
             return False
-        return bool(lowest_near(self._lies, np.array(place), within=_EDGE) < self.plane.at(place) - self._deepest)
+        return bool(
+            lowest_near(self._lies, np.array(place), within=self._scale * _EDGE) < self.plane.at(place) - self._deepest
+        )
 
     def under(
         self, start: complex, foothold: complex, elevation: float, room: tuple[float | None, float], *, clears: bool
@@ -290,4 +296,4 @@ class GroundMap:
         if not self.given:
             return -math.inf
         highest = float(self.expected(_UNDER.real * half[0] + 1j * _UNDER.imag * half[1]).max())
-        return highest - self.plane.height + half[2] + _CLEAR - height
+        return highest - self.plane.height + half[2] + self._scale * _CLEAR - height

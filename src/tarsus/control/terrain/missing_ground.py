@@ -87,7 +87,7 @@ class MissingGround:
         self.lost: int | None = None
         # How long feet that hang have been held up by their legs [s].
         self._held = dict[int, float]()
-        self._edge, self._backed, self._again, self._slows = Edge(), 0.0, 0, ""
+        self._edge, self._backed, self._again, self._slows = Edge(scale), 0.0, 0, ""
         # Whether the robot is to stop, and whether rest footholds are over the hole that it has met.
         self._stops, self._over = True, False
         self.twist: Sequence[float] = (0.0, 0.0, 0.0)
@@ -111,7 +111,7 @@ class MissingGround:
 
     def steps_back(self, leg: int, foot: complex) -> bool:
         """Return whether a foot, here in the heading frame, is on its way to another place."""
-        return leg in self.places and abs(self.places[leg] - foot) > _THERE
+        return leg in self.places and abs(self.places[leg] - foot) > self._scale * _THERE
 
     def tries(self, leg: int, foot: complex) -> bool:
         """Return whether a foot, here in the heading frame, is on its way past an obstacle."""
@@ -168,13 +168,13 @@ class MissingGround:
             pace = max(1 - (depth - slows) / (deep - slows), slowest)
             self.pace, self._slows = min((self.pace, self._slows), (pace, self._names[leg]))
             # At another place, a foot does not search for long at the end of its reach.
-            held_up = raised > _HELD_UP and depth - raised < max(_STEP * height, self._scale * _LOW_STEP)
+            held_up = raised > self._scale * _HELD_UP and depth - raised < max(_STEP * height, self._scale * _LOW_STEP)
             self._held[leg] = (before.get(leg, 0.0) + dt) * (held_up and not falls)
             long = not lasts or self._held[leg] > _HELD
             hangs = not falls and (depth > deep or not lasts) if leg in self.places else long
             missing = depth - max(raised, 0.0) > _DEEP * height + _ROUGHLY_DEEP * deeper or hangs
             missing &= abs(leans) < max(self._scale * _LEANS, deeper)
-            if _tips(search, deep, held=held):
+            if _tips(search, deep, held=held, lifts=self._scale * _LIFTS):
                 self._tip(way)
             if missing and not (self.steps_back(leg, feet[leg]) or self.gives_up(leg)):
                 self.edge = depth if held_up else self.edge
@@ -217,7 +217,7 @@ class MissingGround:
         back = _BACK[min(self._tries[leg], len(_BACK)) - 1] * footholds.placement_radii[leg]
         self.places[leg] = complex(footholds.rest[leg]) - back * self._edge.way
         # Ground that is seen and not reached from here may be reached with other footholds.
-        reached, shallow = f"no ground within {1e3 * depth:.0f} mm below the other feet", depth < _SHALLOW
+        reached, shallow = f"no ground within {1e3 * depth:.0f} mm below the other feet", depth < self._scale * _SHALLOW
         self._cause = self._names[leg], "the ground is lower than the leg reaches" if shallow else reached
         self._again += _AGAIN if sure and not shallow else 0
 
@@ -269,7 +269,7 @@ class MissingGround:
         return grant.at_most(1.0) if self._again and self._edge.since < _CAREFUL else grant
 
 
-def _tips(search: Search, deep: float, *, held: bool) -> bool:
+def _tips(search: Search, deep: float, *, held: bool, lifts: float) -> bool:
     """Return whether a robot tips towards a foot without contact; held by the others, only if it sinks or leans far."""
-    unheld = not held and search.sunk > -_LIFTS and search.depth + max(search.sunk, 0.0) > deep
+    unheld = not held and search.sunk > -lifts and search.depth + max(search.sunk, 0.0) > deep
     return search.sunk > deep or unheld or min(search.leans, search.depth) > deep

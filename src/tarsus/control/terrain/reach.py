@@ -67,8 +67,8 @@ class Reach:
         stance_time : float
             Duration of a stance [s].
         """
-        (vx, vy, wz), posture = tick.twist.tolist(), tick.gait.posture.value
-        x, y, arc = (round(speed * stance_time / _STROKE_STEP) * _STROKE_STEP for speed in (vx, vy, wz * _TURNING_ARM))
+        (vx, vy, wz), posture, step = tick.twist.tolist(), tick.gait.posture.value, self.scale * _STROKE_STEP
+        x, y, arc = (round(speed * stance_time / step) * step for speed in (vx, vy, wz * _TURNING_ARM))
         key = (x, y, arc, *posture[:SWING_HEIGHT].round(3).tolist())
         if key != self._key or rest is not self.rest:
             self._key, self.rest, strokes = key, rest, complex(x, y) + 1j * arc / _TURNING_ARM * rest
@@ -118,7 +118,7 @@ class Reach:
 
     def hangs(self, leg: int, height: float) -> bool:
         """Return whether a leg with its foot at a height in the heading frame [m] is at the end of its reach."""
-        return height < self.lowest[leg] + _HANGING
+        return height < self.lowest[leg] + self.scale * _HANGING
 
     def rises(self, plane: FootPlane, over: list[float], *, bears: list[int], hanging: list[int]) -> list[float]:
         """Return the height of the ground under each leg, as far as it is known, over the plane's at the origin [m].
@@ -135,5 +135,5 @@ class Reach:
         """
         known = [over[leg] if leg in bears else plane.at(place) for leg, place in enumerate(self.rest.tolist())]
         for leg in hanging:
-            known[leg] = self.lowest[leg] - _LOWER
+            known[leg] = self.lowest[leg] - self.scale * _LOWER
         return [height - plane.height for height in known]

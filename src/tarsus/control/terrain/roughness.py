@@ -33,6 +33,8 @@ _STEPS = 4
 class GroundAdaptation:
     """How far a walk may adapt to rough ground, and how slippery the ground may be.
 
+    Lengths are those of legs of 190 mm or more from femur to foot; shorter ones adapt less, in proportion.
+
     Attributes
     ----------
     swing_height : float
@@ -125,17 +127,17 @@ class Roughness:
     @property
     def swing_rise(self) -> float:
         """Addition to the swing height [m]."""
-        return min(self.value, self.adaptation.swing_height)
+        return min(self.value, self._scale * self.adaptation.swing_height)
 
     @property
     def body_rise(self) -> float:
         """Addition to the body height [m]."""
-        return min(self.value, self.adaptation.body_height)
+        return min(self.value, self._scale * self.adaptation.body_height)
 
     @property
     def drawn_in(self) -> float:
         """How far feet are drawn in [m]."""
-        return self._share(0.0, _ROUGH) * self.adaptation.drawn_in
+        return self._share(0.0, _ROUGH) * self._scale * self.adaptation.drawn_in
 
     @property
     def deeper(self) -> float:

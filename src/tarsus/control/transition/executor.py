@@ -39,6 +39,8 @@ class TransitionExecutor:
         The stance at the start.
     foot_targets : FootTargets
         The legs that are taken out of the gait.
+    scale : float
+        By how much lengths are smaller than given, on short legs, 0 to 1.
 
     Attributes
     ----------
@@ -56,12 +58,12 @@ class TransitionExecutor:
         Cycle time over the planned one.
     """
 
-    def __init__(self, initial: StanceTransition, foot_targets: FootTargets) -> None:
+    def __init__(self, initial: StanceTransition, foot_targets: FootTargets, *, scale: float = 1.0) -> None:
         self.scheduler, self.footholds = TransitionScheduler(initial), FootholdTransfer(initial)
         self.pose = PoseController(initial.posture)
         self.timing = StepTiming.of(initial.parameters.gait, initial.cycle_timing.cycle_time)
         self.current, self.lengthened = initial, 1.0
-        self._foot_targets = foot_targets
+        self._foot_targets, self._scale = foot_targets, scale
         # The gait for which all feet touch down, and the transition for which they step to new rest footholds.
         self._next: NextGait | None = None
         self._active: StanceTransition | None = None
@@ -149,7 +151,7 @@ class TransitionExecutor:
         assert rest is not None  # only of a robot that is fast
         off = np.abs(state.foot - rest)
         off[list(self.current.parameters.excluded)] = 0.0
-        near = bool(off.max() <= stance_tolerance(state, stands=stands))
+        near = bool(off.max() <= stance_tolerance(state, scale=self._scale, stands=stands))
         return near and not (state.felt and self._foot_targets.returning)
 
     # Beginning a transition.
@@ -231,7 +233,7 @@ class TransitionExecutor:
     def _stays_within(self, bounds: Float[np.ndarray, "legs 16"], now: TickState, timing: StepTiming) -> bool:
         prediction = FootPrediction.of(now.gait, *stance_intervals(now.gait, timing), timing.bandwidth)
         excess = prediction.excess(now.twist[None], self.footholds.shifted(bounds))
-        return bool(excess.max() <= stance_tolerance(now.gait))
+        return bool(excess.max() <= stance_tolerance(now.gait, scale=self._scale))
 
     def _begin(self, planned: StanceTransition, state: GaitState) -> None:
         """Transfer the feet to their new rest footholds; legs that leave the gait get foot targets."""

@@ -92,7 +92,9 @@ def _lift(
     lifts = np.array(due)
     lifts[list(inputs.excluded)] = False
     if final is not None:
-        away = np.abs(state.foot - final) > stance_tolerance(state)
+        away = np.abs(state.foot - final) > stance_tolerance(
+            state, scale=1.0 if inputs.felt is None else inputs.felt.scale
+        )
         # A leg that returns to the gait is over its foothold at best.
         lifts = lifts & (away if inputs.felt is None else away | ~np.array(inputs.felt.steps))
     missed = due & ~lifts
@@ -113,17 +115,19 @@ def _lift(
     )
 
 
-def stance_tolerance(state: GaitState, *, stands: bool = False) -> float:
+def stance_tolerance(state: GaitState, *, scale: float, stands: bool = False) -> float:
     """Return how close to its rest foothold a foot is at it [m].
 
     Parameters
     ----------
     state : GaitState
         The gait state.
+    scale : float
+        By how much lengths are smaller than given, on short legs, 0 to 1.
     stands : bool
         Whether the foot has been at it.
     """
-    return _FELT_TOLERANCES[stands] if state.felt else POSITION_TOLERANCE
+    return scale * _FELT_TOLERANCES[stands] if state.felt else POSITION_TOLERANCE
 
 
 def _swing(

@@ -153,7 +153,7 @@ def _losing(over: float, felt: FeltInputs) -> float:
     """Return the least speed down of a foot that has stood, so high over the expected ground, while others stand."""
     if felt.redundant and felt.pace > _GOES_ON:
         return felt.scale * _LOSING_ONE_OF_MANY
-    rough = min(felt.depth / _ROUGH, 1.0) if over < -felt.scale * _NEAR else 1.0
+    rough = min(felt.depth / (felt.scale * _ROUGH), 1.0) if over < -felt.scale * _NEAR else 1.0
     return felt.scale * (_LOSING + rough * (_SEARCHING - _LOSING))
 
 
@@ -168,7 +168,7 @@ def _swinging(
     """Return the height of a foot in the air, and its state: it rises to its top, then goes down."""
     phase, swing_time, lifted_at, place = swing
     speed, acceleration, top, top_phase, slide, drawn_back = foot
-    rough = min(felt.depth / _ROUGH, 1.0)
+    rough = min(felt.depth / (felt.scale * _ROUGH), 1.0)
     part = max(_DESCENT + rough * (_ROUGH_DESCENT - _DESCENT) - felt.late / swing_time, _SHORTEST_DESCENT)
     if math.isnan(top) or (phase < top_phase and drawn_back is None):
         # No higher than the foot can be there in time, and down again by the end of its swing.
@@ -191,9 +191,10 @@ def _swinging(
     after = _towards(speed, -fastest, _FOOT_ACCELERATION * dt)
     # Over higher ground on its way it stays.
     lowest = under.lowest
-    if under.way > under.expected + _OVER:
-        lowest = max(lowest, min(under.way + _OVER, under.highest))
-    if drawn_back is not None and under.clears and abs(place - drawn_back) < _PAST:
+    room = felt.scale * _OVER
+    if under.way > under.expected + room:
+        lowest = max(lowest, min(under.way + room, under.highest))
+    if drawn_back is not None and under.clears and abs(place - drawn_back) < felt.scale * _PAST:
         lowest = max(lowest, height)
     height, after = _no_lower(height + (speed + after) / 2 * dt, after, height, lowest)
     return height, FeltFoot(after, 0.0, top, top_phase, slide, drawn_back)

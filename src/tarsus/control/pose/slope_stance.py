@@ -35,21 +35,23 @@ class SlopeStance:
 
     Parameters
     ----------
-    robot : Robot
-        A single robot.
+    robot, scale : Robot, float
+        A single robot; by how much lengths are smaller than given, on short legs, 0 to 1.
 
     Attributes
     ----------
+    half : tuple of float
+        Half the body's length, width and height [m].
     shift : complex array, shape (legs,)
         By how much the rest footholds move, in the heading frame [m].
     uphill : complex
         The slope in the heading frame [m/m]; 0 where the stance is that of level ground.
     """
 
-    def __init__(self, robot: Robot) -> None:
+    def __init__(self, robot: Robot, *, scale: float = 1.0) -> None:
         g, size = robot.geometry, robot.body_size
         self.shift: Complex[np.ndarray, "legs"] = np.zeros(robot.legs, dtype=complex)
-        self.uphill = 0j
+        self.uphill, self._scale = 0j, scale
         self._mounts: Complex[np.ndarray, "legs"] = np.asarray(g.mount_x + 1j * g.mount_y)
         self._drawn_in: Float[np.ndarray, "legs"] = np.asarray(_DRAWN_IN * (g.femur + g.tibia))
         self.half = (0.0, 0.0, 0.0) if size is None else tuple((np.asarray(size) / 2).tolist())
@@ -82,7 +84,7 @@ class SlopeStance:
         angle = np.angle(out * uphill.conjugate())
         nearer = drawn_in * (1 - share) + share * self._drawn_in * np.clip(-np.cos(angle) / _DOWNHILL, 0.0, 1.0)
         wanted = out * ((1 - nearer / np.abs(out)) * np.exp(1j * share * _TURNED * np.sin(2 * angle)) - 1)
-        least = (_SMALLEST if walks else _STANDING) if share or drawn_in else 0.0
+        least = self._scale * (_SMALLEST if walks else _STANDING) if share or drawn_in else 0.0
         if float(np.abs(wanted - self.shift).max()) > least:
             self.shift = wanted
 
@@ -106,4 +108,4 @@ class SlopeStance:
             The plane of the feet, in the heading frame; commanded height of the body [m].
         """
         rise = abs(plane.slope_x) * self.half[0] + abs(plane.slope_y) * self.half[1]
-        return float(rise), float(max(height - self.half[2] - _ROOM, 0.0))
+        return float(rise), float(max(height - self.half[2] - self._scale * _ROOM, 0.0))
