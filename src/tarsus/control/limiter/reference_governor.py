@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import cmath
 from collections.abc import Callable
 from operator import is_
 from typing import TYPE_CHECKING, Any
@@ -72,6 +71,6 @@ class GovernorLimiter:
 
     def _is_behind(self, state: GaitState) -> bool:
         """Return whether a foot that stands is outside its polygon: one that has landed short of its foothold."""
-        places = (state.foot - state.origin) * cmath.exp(-1j * state.yaw)
+        places = state.in_heading(state.foot)
         along = (NORMALS_CONJUGATE * places[:, None]).real
         return bool((along > self._transitions.bounds)[state.down].any())

@@ -159,11 +159,11 @@ class FeltGround:
         if kept and self._given == before and (standing or not self._next_lift.is_due(timing, state, dt)):
             self._inputs = kept = kept.moved_by(self.body.rates.climb, self.body.rates.turn)
             return kept
-        due, turn = None if standing else timing.due(state, dt), cmath.exp(-1j * state.yaw)
+        due = None if standing else timing.due(state, dt)
         dt, self._idle = self._idle, 0.0
         steps = [leg not in excluded for leg in range(len(state.foot))]
         footing = Footing(
-            [(foot - state.origin) * turn for foot in state.foot.tolist()],
+            state.in_heading(state.foot).tolist(),
             [on and step for on, step in zip(state.down.tolist(), steps, strict=True)],
             along_gravity(self._centre, state.moved_posture[:3].tolist(), self.body.tilt or (0.0, 0.0)),
             float(state.posture.value[2]),
@@ -251,7 +251,7 @@ class FeltGround:
         heading = cmath.exp(1j * state.yaw)
         known = self.contacts.is_known(leg) and (down or self.contacts.lifted[leg])
         searches = known and not (self.condition.in_air or self.missing.gives_up(leg))
-        goal = place if down else (complex(state.foothold[leg]) - state.origin) * heading.conjugate()
+        goal = place if down else state.in_heading(complex(state.foothold[leg]))
         reach, rests = self.body.reach, self._rests and self.support.held
         lowest = max(reach.lowest[leg], self.ground.at(goal) - _NEAR) if rests else reach.lowest[leg]
         room = (lowest if searches else None, reach.highest_on_way(leg, place, goal))

@@ -55,8 +55,7 @@ def met_ground(
         The gait and its frequency; rate of the steps, 0 to 1.
     """
     contacts, reach, landed, elevation = body.contacts, body.reach, list[int](), state.elevation
-    turn = cmath.exp(-1j * state.yaw)
-    places = ((state.foot - state.origin) * turn).tolist()
+    places = state.in_heading(state.foot).tolist()
     for leg, (down, phase) in enumerate(zip(state.down.tolist(), state.swing_phase.tolist(), strict=True)):
         foot, meets = state.felt[leg], contacts.estimator.reads(leg) and contacts.lifted[leg]
         if down or phase <= _CLEAR:
@@ -64,7 +63,7 @@ def met_ground(
             if (contacts.feels(leg) or leg in stopped) and missing.tries(leg, places[leg]) and not rises:
                 state = _trying_again(state, leg, missing, reach, state)
             continue
-        leaves = missing.obstacles.leaves((complex(state.foothold[leg]) - state.origin) * turn - places[leg])
+        leaves = missing.obstacles.leaves(state.in_heading(complex(state.foothold[leg])) - places[leg])
         if not leaves and _collides_again(
             state, leg, side=contacts.feels(leg) and contacts.lifted[leg], stopped=leg in stopped, scale=reach.scale
         ):
@@ -164,15 +163,14 @@ def _rising_again(state: GaitState, leg: int, highest: float, timing: StepTiming
 
 def _highest(state: GaitState, leg: int, reach: Reach) -> float:
     """Return the greatest height in G of a foot on its way to its foothold [m]."""
-    turn = cmath.exp(-1j * state.yaw)
-    start, end = ((complex(place) - state.origin) * turn for place in (state.foot[leg], state.foothold[leg]))
+    start, end = (state.in_heading(complex(place)) for place in (state.foot[leg], state.foothold[leg]))
     return state.elevation + reach.highest_on_way(leg, start, end)
 
 
 def _trying_again(state: GaitState, leg: int, missing: MissingGround, reach: Reach, after: GaitState) -> GaitState:
     """Return the state with a foot that is stopped again: it is drawn back, and tries again while the walk stands."""
     height, turn = float(state.ground_height[leg]), cmath.exp(1j * state.yaw)
-    foot, goal = ((complex(places[leg]) - state.origin) / turn for places in (state.foot, state.foothold))
+    foot, goal = (state.in_heading(complex(places[leg])) for places in (state.foot, state.foothold))
     top = min(height + reach.scale * _HIGHER, max(_highest(state, leg, reach), height))
     back = missing.stopped(leg, foot, goal)
     slide = reach.scale * _DRAWS_BACK * turn * back / max(abs(back), 1e-9)

@@ -204,14 +204,14 @@ class GroundMap:
             return
         height, swing_height = state.posture.value[[2, SWING_HEIGHT]].tolist()
         self._deepest = min(_LOWERED * height - max(reach.lowest), _DEEPEST * height)
-        highest, turn = reach.highest_stand(swing_height), cmath.exp(-1j * state.yaw)
+        highest = reach.highest_stand(swing_height)
         for leg, (down, phase) in enumerate(zip(state.down.tolist(), state.swing_phase.tolist(), strict=True)):
             if down:
                 self.beside.pop(leg, None)
                 self.holes.pop(leg, None)
                 self.crossing.discard(leg)
                 continue
-            start, end = ((complex(at[leg]) - state.origin) * turn for at in (state.foot, state.foothold))
+            start, end = (state.in_heading(complex(at[leg])) for at in (state.foot, state.foothold))
             again = leg in self.beside and phase < _CHOOSING_AGAIN and (leg in self.holes or self.is_hole(end))
             if again or (leg not in self.beside and 0 < phase < _CHOOSING):
                 kept = np.abs((NORMALS_CONJUGATE * reach.strokes[leg]).real) / 2

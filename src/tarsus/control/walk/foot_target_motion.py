@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import cmath
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -66,8 +65,7 @@ def begin_foot_target(state: GaitState, leg: int) -> FootTargetMotion:
     leg : int
         Index of the leg; its foot is in stance.
     """
-    turn = cmath.exp(-1j * state.yaw)
-    in_heading = (complex(state.foot[leg]) - state.origin) * turn
+    in_heading = state.in_heading(complex(state.foot[leg]))
     vx, vy, wz = state.twist.value.tolist()
     # A stance foot is at rest in G.
     relative = -(complex(vx, vy) + 1j * wz * in_heading)

@@ -7,7 +7,6 @@ stays within bounds. What was feasible in the last tick is feasible again, so th
 
 from __future__ import annotations
 
-import cmath
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -82,7 +81,7 @@ class FootPrediction(NamedTuple):
         axes = (3, *(1,) * times.ndim)
         travel = state.twist.value.reshape(axes) * of_value
         travel += state.twist.rate.reshape(axes) * of_rate
-        return cls((state.foothold - state.origin) * cmath.exp(-1j * state.yaw), of_target, travel)
+        return cls(state.in_heading(state.foothold), of_target, travel)
 
     def excess(
         self, targets: Float[np.ndarray, "n 3"], bounds: Float[np.ndarray, "legs 16"]

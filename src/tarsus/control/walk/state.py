@@ -8,7 +8,7 @@ from __future__ import annotations
 import cmath
 import math
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple, overload
 
 import numpy as np
 
@@ -146,6 +146,20 @@ class GaitState(NamedTuple):
         origin = self.origin + cmath.exp(1j * self.yaw) * complex(x, y)
         rotation = np.array(rotation_rows(roll, pitch, self.yaw + yaw))
         return Pose.unchecked(rotation, np.array([origin.real, origin.imag, self.elevation + z]))
+
+    @overload
+    def in_heading(self, places: complex) -> complex: ...
+    @overload
+    def in_heading(self, places: Complex[np.ndarray, "legs"]) -> Complex[np.ndarray, "legs"]: ...
+    def in_heading(self, places: Any) -> Any:
+        """Return places of G in the heading frame [m].
+
+        Parameters
+        ----------
+        places : complex or complex array, shape (legs,)
+            Where in G they are [m].
+        """
+        return (places - self.origin) * cmath.exp(-1j * self.yaw)
 
     def heights(self, swing_height: float) -> list[float]:
         """Return the heights of the feet in G as a list of floats [m].
