@@ -399,6 +399,18 @@ def test_a_switch_that_stays_open_is_told_by_the_feet_that_its_foot_lifts_off():
     assert not over_a_hole.is_open(0)
 
 
+def test_a_contact_that_is_missing_once_after_some_ticks_as_planned_is_not_lost():
+    contacts = FootContacts(6)
+    contacts.step([True] * 6, [True] * 6, 0.04, count=4)
+    contacts.step([False, *[True] * 5], [True] * 6, 0.04, count=4)
+    assert contacts.standing[0]
+    contacts.step([False, *[True] * 5], [True] * 6, 0.03)
+    assert not contacts.standing[0]
+    # A foot in the air has lost it before.
+    contacts.step([False, *[True] * 5], [False, *[True] * 5], 0.04, count=4)
+    assert contacts.lifted[0]
+
+
 def open_after(pitch, *, ticks):
     """The tick in which a switch is found open whose foot tilts the body while another one loses contact; or None."""
     contacts = FootContacts(6)

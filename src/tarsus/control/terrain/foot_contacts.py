@@ -135,7 +135,8 @@ class FootContacts:
         self.estimator.step(readings, dt, count=count)
         for leg, on in enumerate(down):
             if self.estimator.known[leg] and not self.estimator.touching[leg]:
-                self._without[leg] += dt
+                # A foot that stands has lost its contact in the last tick: before that, all was as planned.
+                self._without[leg] += dt / count if on and not self._without[leg] else dt
             else:
                 self._without[leg], self._evidence[leg] = 0.0, 0.0
                 self._settled[leg] += dt
