@@ -124,10 +124,8 @@ def finite_numbers(name: str, values: Sequence[float], axes: Sequence[str], *, m
 
     Parameters
     ----------
-    name : str
-        Name of the values, for the message.
-    values : sequence of float
-        The numbers.
+    name, values : str, sequence of float
+        Name of the values, for the message; the numbers.
     axes : sequence of str
         Names of the axes.
     most : float

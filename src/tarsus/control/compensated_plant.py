@@ -92,10 +92,8 @@ class CompensatedPlant:
 
         Parameters
         ----------
-        output : ControlOutput
-            What the controller gave out.
-        dt : float
-            Duration of the tick [s].
+        output, dt : ControlOutput, float
+            What the controller gave out; duration of the tick [s].
 
         Returns
         -------

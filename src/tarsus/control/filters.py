@@ -53,10 +53,8 @@ class CriticallyDamped(NamedTuple):
 
         Parameters
         ----------
-        target, dt : array, float
-            The target; the time [s].
-        bandwidth : float
-            The bandwidth [rad/s].
+        target, dt, bandwidth : array, float, float
+            The target; the time [s]; the bandwidth [rad/s].
         """
         decay = math.exp(-bandwidth * dt)
         gap, kept = self.value - target, decay * dt
@@ -68,10 +66,8 @@ class CriticallyDamped(NamedTuple):
 
         Parameters
         ----------
-        target, dt : array, float
-            The target; the time [s].
-        bandwidth : float
-            The bandwidth [rad/s].
+        target, dt, bandwidth : array, float, float
+            The target; the time [s]; the bandwidth [rad/s].
         """
         if self.value is target:
             return self
@@ -111,10 +107,8 @@ def integral_factors(time: Any, *, bandwidth: float) -> tuple[Any, Any, Any]:
 
     Parameters
     ----------
-    time : float or array
-        The time [s].
-    bandwidth : float
-        The bandwidth [rad/s].
+    time, bandwidth : float or array, float
+        The time [s]; the bandwidth [rad/s].
 
     Returns
     -------

@@ -48,10 +48,8 @@ class Plant(Protocol):
 
         Parameters
         ----------
-        output : ControlOutput
-            What the controller gave out; a real plant uses its angles only.
-        dt : float
-            Duration of the tick [s].
+        output, dt : ControlOutput, float
+            What the controller gave out; a real plant uses its angles only; duration of the tick [s].
         """
 
     def stop(self) -> None:
@@ -83,10 +81,8 @@ class Environment:
 
         Parameters
         ----------
-        leg : int
-            Number of the leg.
-        height : float
-            Over flat ground [m].
+        leg, height : int, float
+            Number of the leg; over flat ground [m].
         """
         self._height[self._index(leg)], self._contacts = _finite("height", height), True
 
@@ -105,10 +101,8 @@ class Environment:
 
         Parameters
         ----------
-        leg : int
-            Number of the leg.
-        force : float
-            Ground on foot [N].
+        leg, force : int, float
+            Number of the leg; ground on foot [N].
         """
         self._force[self._index(leg)], self._forces = _finite("force", force), True
 
@@ -185,10 +179,8 @@ class IdealPlant:
 
         Parameters
         ----------
-        output : ControlOutput
-            What the controller gave out.
-        dt : float
-            Duration of the tick [s].
+        output, dt : ControlOutput, float
+            What the controller gave out; duration of the tick [s].
         """
         before = output.angles if self._angles is None else self._angles
         self._angles = output.angles

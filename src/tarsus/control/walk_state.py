@@ -47,10 +47,8 @@ def next_walk_state(
         Whether the twist to follow is not zero.
     at_rest : bool
         Whether all feet are down at their rest footholds and nothing moves.
-    changes_gait : bool
-        Whether all feet touch down for another gait.
-    searches : bool
-        Whether a foot searches for ground.
+    changes_gait, searches : bool, bool
+        Whether all feet touch down for another gait; whether a foot searches for ground.
     """
     if searches:
         following = WalkState.SEARCHING

@@ -28,10 +28,8 @@ class GovernorLimiter:
 
     Parameters
     ----------
-    transitions : TransitionExecutor
-        The stance and its transitions.
-    looks : callable
-        Returns whether a walk that feels the ground looks at it in this tick.
+    transitions, looks : TransitionExecutor, callable
+        The stance and its transitions; returns whether a walk that feels the ground looks at it in this tick.
     """
 
     def __init__(self, transitions: TransitionExecutor, looks: Callable[[], bool]) -> None:

@@ -37,10 +37,8 @@ class CommandSource(Protocol):
 
         Parameters
         ----------
-        time : float
-            The time at the end of the last tick [s].
-        output : ControlOutput
-            What the controller gave last.
+        time, output : float, ControlOutput
+            The time at the end of the last tick [s]; what the controller gave last.
         note : callable
             Takes the kind and the text of an event to be recorded.
         """
@@ -103,23 +101,17 @@ def run(
 
     Parameters
     ----------
-    controller : RobotController
-        The controller.
-    plant : Plant
-        Executes the joint angles: an ideal, simulated or real robot of the same kind.
+    controller, plant : RobotController, Plant
+        The controller; executes the joint angles: an ideal, simulated or real robot of the same kind.
     commands : CommandSource or iterable of (float, Command or (vx, vy, wz))
         Times [s] and what is commanded from then on; or what gives a command for every tick.
     duration : float, optional
         How long the run takes [s]; for a list of commands, left out: until 2 s after the last one, and until the robot
         is at rest where the twist is 0.
-    rate : float
-        Ticks per second [1/s].
-    jitter : float
-        By how much a tick may be longer or shorter, at random [s].
-    seed : int
-        Seed of what is random.
-    name : str
-        What the run is called.
+    rate, jitter : float, float
+        Ticks per second [1/s]; by how much a tick may be longer or shorter, at random [s].
+    seed, name : int, str
+        Seed of what is random; what the run is called.
 
     Raises
     ------

@@ -83,10 +83,8 @@ class DeflectionCompensation:
             The readings.
         angles : array, shape (legs, 3)
             Joint angles that were commanded in the last tick [rad].
-        dt : float
-            Time since the last tick [s].
-        slope : float
-            Slope under the feet [m/m].
+        dt, slope : float, float
+            Time since the last tick [s]; slope under the feet [m/m].
         bears : callable
             Which feet bear load: they share the robot's weight out where forces are not measured.
         """

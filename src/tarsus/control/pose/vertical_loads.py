@@ -64,10 +64,8 @@ class VerticalLoads:
         ----------
         valid : ValidReadings
             The readings; a leg without joint angles, or without force where other legs have one, bears nothing.
-        bears : callable
-            Which feet bear load: of use where forces are not measured.
-        dt : float
-            Time since the last tick [s].
+        bears, dt : callable, float
+            Which feet bear load: of use where forces are not measured; time since the last tick [s].
         feet : sequence of (x, y)
             The feet in B [m].
         angles : array, shape (legs, 3)

@@ -65,10 +65,8 @@ class InterventionLog:
 
         Parameters
         ----------
-        time : float
-            Time of the guard [s].
-        state : GuardState
-            State of the guard.
+        time, state : float, GuardState
+            Time of the guard [s]; state of the guard.
         """
         total = sum(self._counts.values())
         lines = [f"{total} intervention{'s' * (total != 1)} in {time:.2f} s, state: {state}"]

@@ -81,10 +81,8 @@ class Violation(NamedTuple):
 
         Parameters
         ----------
-        robot : Robot
-            The robot.
-        time : float
-            Time of the guard [s].
+        robot, time : Robot, float
+            The robot; time of the guard [s].
         """
         leg = robot.leg_codes[self.leg] if self.leg >= 0 else ""
         joint = JOINTS[self.joint] if self.joint >= 0 else ""

@@ -61,10 +61,8 @@ class JointMonitor:
 
         Parameters
         ----------
-        angles : list of float
-            Joint angles in one flat list [rad].
-        step : float
-            Time step that led there [s].
+        angles, step : list of float, float
+            Joint angles in one flat list [rad]; time step that led there [s].
         """
         self.angles, self.speeds, self._step = angles, [0.0] * len(angles), step
 
@@ -95,10 +93,8 @@ class JointMonitor:
 
         Parameters
         ----------
-        angles : list of float
-            Joint angles at the end of the step, in one flat list [rad].
-        step : float
-            Time step [s].
+        angles, step : list of float, float
+            Joint angles at the end of the step, in one flat list [rad]; time step [s].
         """
         violations = []
         interval = (step + self._step) / 2
@@ -126,10 +122,8 @@ class JointMonitor:
 
         Parameters
         ----------
-        angles : list of float
-            Joint angles in one flat list [rad].
-        step : float
-            Time step [s].
+        angles, step : list of float, float
+            Joint angles in one flat list [rad]; time step [s].
         """
         self.speeds = [(angle - last) / step for angle, last in zip(angles, self.angles, strict=True)]
         self.angles, self._step = angles, step
@@ -161,10 +155,8 @@ class JointMonitor:
 
         Parameters
         ----------
-        last_command, command : list of float
-            Commanded angles of the last step and of this one, in flat lists [rad].
-        step : float
-            Time step [s].
+        last_command, command, step : list of float, list of float, float
+            Commanded angles of the last step and of this one, in flat lists [rad]; time step [s].
         """
         matches, velocities = True, []
         for last_angle, last, angle, recovery_speed, (_, _, max_speed, max_acceleration) in zip(
@@ -203,12 +195,8 @@ def stoppable_speed(distance: float, acceleration: float, step: float) -> float:
 
     Parameters
     ----------
-    distance : float
-        Distance available, this step included [rad].
-    acceleration : float
-        Greatest acceleration [rad/s^2].
-    step : float
-        Time step [s].
+    distance, acceleration, step : float, float, float
+        Distance available, this step included [rad]; greatest acceleration [rad/s^2]; time step [s].
     """
     half = acceleration * step / 2
     # Either the step alone uses the distance, or the step and the braking distance after it do.

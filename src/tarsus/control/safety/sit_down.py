@@ -38,10 +38,8 @@ class SitDown:
     ----------
     robot : Robot
         A single robot.
-    bounds : GuardBounds
-        Bounds on speeds and heights.
-    joints : JointMonitor
-        The joints, at rest.
+    bounds, joints : GuardBounds, JointMonitor
+        Bounds on speeds and heights; the joints, at rest.
     stance : list of bool or None
         Feet in stance; None for all.
     up : Point

@@ -22,10 +22,8 @@ def project(points: list[Point], origin: Point, up: Point) -> tuple[list[float],
 
     Parameters
     ----------
-    points : list of Point
-        The points [m].
-    origin : Point
-        The origin [m].
+    points, origin : list of Point, Point
+        The points [m]; the origin [m].
     up : Point
         Unit vector of the upward direction.
     """

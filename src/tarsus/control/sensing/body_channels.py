@@ -33,10 +33,8 @@ class AttitudeChannel(Channel):
 
         Parameters
         ----------
-        value : anything
-            The reading.
-        rejected : list of str
-            The reason of a rejection is appended to it.
+        value, rejected : anything, list of str
+            The reading; the reason of a rejection is appended to it.
         """
         return self._accepted(0, self._checked(value), rejected)
 
@@ -66,10 +64,8 @@ class AngularRateChannel(Channel):
 
         Parameters
         ----------
-        value : anything
-            The reading.
-        rejected : list of str
-            The reason of a rejection is appended to it.
+        value, rejected : anything, list of str
+            The reading; the reason of a rejection is appended to it.
         """
         reading: Vector | str = as_vector(value) or "expected three numbers"
         if not isinstance(reading, str) and not all(map(math.isfinite, reading)):

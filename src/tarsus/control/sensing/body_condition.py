@@ -49,10 +49,8 @@ class BodyCondition:
             Which feet touch the ground; True where nothing is known.
         attitude : (roll, pitch) or None
             Measured [rad]; None where it is not, as beyond 60 degrees.
-        dt : float
-            Time since the last tick [s].
-        held : bool
-            Whether the feet that touch hold the robot.
+        dt, held : float, bool
+            Time since the last tick [s]; whether the feet that touch hold the robot.
         """
         self.airborne = 0.0 if any(touching) else self.airborne + dt
         self.carried = self.in_air or (self.carried and not held)

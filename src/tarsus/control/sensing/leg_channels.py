@@ -43,10 +43,8 @@ class _LegChannel(Channel, ABC):
 
         Parameters
         ----------
-        value : anything
-            The reading.
-        rejected : list of str
-            The reasons of rejections are appended to it.
+        value, rejected : anything, list of str
+            The reading; the reasons of rejections are appended to it.
         """
         if type(value) is np.ndarray and value.shape == self._shapes[0] and self._plausible == self._settled:
             plain = self._plain(value)
@@ -94,10 +92,8 @@ class VectorChannel(_LegChannel):
 
     Parameters
     ----------
-    name : str
-        Name of the channel in messages.
-    legs : sequence of str
-        Names of the legs in messages.
+    name, legs : str, sequence of str
+        Name of the channel in messages; names of the legs in messages.
     bounds : array, shape (legs, 3, 2), optional
         Plausible range of each number; left out, every finite number is plausible.
     beyond : str

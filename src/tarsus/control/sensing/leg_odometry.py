@@ -132,10 +132,8 @@ class LegOdometry:
 
         Parameters
         ----------
-        legs : list of int
-            The legs.
-        valid : ValidReadings
-            The readings.
+        legs, valid : list of int, ValidReadings
+            The legs; the readings.
         angles : array, shape (legs, 3)
             Commanded joint angles [rad].
         """

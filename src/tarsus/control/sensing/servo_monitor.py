@@ -112,10 +112,8 @@ class ServoMonitor:
         ----------
         commanded : array, shape (legs, 3)
             Commanded until now [rad].
-        valid : ValidReadings
-            The readings; legs without measured joint angles are not monitored.
-        dt : float
-            Time since the last tick [s].
+        valid, dt : ValidReadings, float
+            The readings; legs without measured joint angles are not monitored; time since the last tick [s].
         """
         commands = self._commands
         commands.append((dt, commanded))

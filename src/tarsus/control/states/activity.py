@@ -140,10 +140,8 @@ class Playing:
 
     Parameters
     ----------
-    sequence : MotionSequence
-        What is played.
-    state : RobotState
-        What the robot does meanwhile.
+    sequence, state : MotionSequence, RobotState
+        What is played; what the robot does meanwhile.
     before : Activity
         What it did before, and does again where the sequence is played back to its start.
     end : RobotState
@@ -186,10 +184,8 @@ class Resting:
 
     Parameters
     ----------
-    sample : SequenceSample
-        How the robot lies.
-    state : RobotState
-        Lying or folded.
+    sample, state : SequenceSample, RobotState
+        How the robot lies; lying or folded.
 
     Attributes
     ----------

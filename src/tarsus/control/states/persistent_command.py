@@ -69,10 +69,8 @@ class PersistentCommand:
 
         Parameters
         ----------
-        command : Command
-            What was merged.
-        full : Command
-            The result of `merged`.
+        command, full : Command, Command
+            What was merged; the result of `merged`.
         """
         self.full, self._last = full, (command, full)
 

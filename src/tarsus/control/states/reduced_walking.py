@@ -54,10 +54,8 @@ class ReducedWalking(Walking):
     ----------
     robot : Robot
         The robot with all of its legs.
-    failed : mapping of int to int
-        Legs that have failed, and the joint.
-    now : Snapshot
-        The robot now.
+    failed, now : mapping of int to int, Snapshot
+        Legs that have failed, and the joint; the robot now.
     speeds : array, shape (legs, 3)
         Joint speeds now [rad/s].
     options

@@ -90,9 +90,7 @@ def next_state(state: RobotState, goal: RobotState) -> tuple[RobotState, RobotSt
 
     Parameters
     ----------
-    state : RobotState
-        The state now: standing, lying or folded.
-    goal : RobotState
-        One of `REQUESTABLE`.
+    state, goal : RobotState, RobotState
+        The state now: standing, lying or folded; one of `REQUESTABLE`.
     """
     return _STEPS.get((state, goal))

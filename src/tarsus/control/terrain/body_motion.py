@@ -149,10 +149,8 @@ class BodyMotion:
         ----------
         tick, valid : TickState, ValidReadings
             The gait state and the twist that is followed; the readings.
-        footing, transitions : Footing, TransitionExecutor
-            The feet that should stand; timing and rest footholds.
-        pace : float
-            Rate of the steps and the twist, 0 to 1.
+        footing, transitions, pace : Footing, TransitionExecutor, float
+            The feet that should stand; timing and rest footholds; rate of the steps and the twist, 0 to 1.
         """
         state, places, dt, self.since = tick.gait, footing.places, self.since, 0.0
         rest, rests = transitions.footholds.rest, not tick.twist.any()

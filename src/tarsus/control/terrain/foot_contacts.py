@@ -120,10 +120,8 @@ class FootContacts:
             Which feet touch the ground, as measured; None where nothing is.
         down : sequence of bool
             Which feet should stand.
-        dt, age : float
-            Time since the last tick [s]; time since the measurement [s].
-        count : int
-            Number of ticks.
+        dt, age, count : float, float, int
+            Time since the last tick [s]; time since the measurement [s]; number of ticks.
         leaving : sequence of bool, optional
             Which feet are to lift off soon: once these have stood, they are not lowered where others take their load.
         rests : bool

@@ -271,10 +271,8 @@ class GroundMap:
 
         Parameters
         ----------
-        rises : list of float
-            The height now, over the plane's at the origin [m].
-        reach : Reach
-            Rest footholds, and strokes about them.
+        rises, reach : list of float, Reach
+            The height now, over the plane's at the origin [m]; rest footholds, and strokes about them.
         looks : bool
             Whether to look ahead: not while a foot looks for the ground that it should stand on.
         """
@@ -288,10 +286,8 @@ class GroundMap:
 
         Parameters
         ----------
-        half : sequence of float
-            Half the body's length, width and height [m].
-        height : float
-            Commanded height of the body [m].
+        half, height : sequence of float, float
+            Half the body's length, width and height [m]; commanded height of the body [m].
         """
         if not self.given:
             return -math.inf

@@ -49,10 +49,8 @@ class SlopeLimit:
 
         Parameters
         ----------
-        level : FootPlane
-            The plane of the feet as a level body sees it.
-        velocity : complex
-            The velocity that is asked for [m/s].
+        level, velocity : FootPlane, complex
+            The plane of the feet as a level body sees it; the velocity that is asked for [m/s].
         off : float
             By how much the body is off the attitude to keep [rad].
         """

@@ -101,10 +101,8 @@ class Support:
 
         Parameters
         ----------
-        legs, footing : list of int, Footing
-            Legs whose feet bear load; all feet.
-        anew : bool
-            Whether to look at the same feet again.
+        legs, footing, anew : list of int, Footing, bool
+            Legs whose feet bear load; all feet; whether to look at the same feet again.
         """
         if anew or legs != self._bearing:
             self._bearing, self.held = legs, holds([footing.places[leg] for leg in legs], footing.centre)

@@ -18,10 +18,8 @@ def estimated(walk: WalkComponents, tick: TickState, readings: SensorReadings | 
     ----------
     walk, tick : WalkComponents, TickState
         The components; the state.
-    readings : SensorReadings or None
-        What is measured.
-    dt : float
-        Length of the tick [s].
+    readings, dt : SensorReadings or None, float
+        What is measured; length of the tick [s].
     """
     if readings is None and not tick.gait.felt:
         return tick

@@ -19,10 +19,8 @@ def integrated(walk: WalkComponents, tick: TickState, dt: float) -> TickState:
 
     Parameters
     ----------
-    walk, tick : WalkComponents, TickState
-        The components; the state.
-    dt : float
-        Length of the tick [s].
+    walk, tick, dt : WalkComponents, TickState, float
+        The components; the state; length of the tick [s].
     """
     timing, targets = walk.transitions.timing, walk.foot_targets
     inputs = _step_inputs(walk, tick, dt)

@@ -28,10 +28,8 @@ def planned(walk: WalkComponents, tick: TickState, command: Command, dt: float) 
     ----------
     walk : WalkComponents
         The components; the transition executor plans and begins transitions.
-    tick, command : TickState, Command
-        The state; what is commanded.
-    dt : float
-        Length of the tick [s].
+    tick, command, dt : TickState, Command, float
+        The state; what is commanded; length of the tick [s].
     """
     state = walk.transitions.advance(partial(_plan_transition, walk, tick.gait), tick)
     walk.foot_targets.set_targets(command, state.posture.value, walk.transitions.current.parameters.sway, dt)

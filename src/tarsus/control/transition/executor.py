@@ -35,10 +35,8 @@ class TransitionExecutor:
 
     Parameters
     ----------
-    initial : StanceTransition
-        The stance at the start.
-    foot_targets : FootTargets
-        The legs that are taken out of the gait.
+    initial, foot_targets : StanceTransition, FootTargets
+        The stance at the start; the legs that are taken out of the gait.
     scale : float
         By how much lengths are smaller than given, on short legs, 0 to 1.
 
@@ -142,10 +140,8 @@ class TransitionExecutor:
 
         Parameters
         ----------
-        state : GaitState
-            The gait state of a robot that hardly moves.
-        stands : bool
-            Whether feet would step for this alone.
+        state, stands : GaitState, bool
+            The gait state of a robot that hardly moves; whether feet would step for this alone.
         """
         rest = final_footholds(state, rest=self.footholds.rest, bandwidth=self.bandwidth)
         assert rest is not None  # only of a robot that is fast
@@ -161,10 +157,8 @@ class TransitionExecutor:
 
         Parameters
         ----------
-        plan : callable
-            Plans a transition, as for `TransitionScheduler.advance_planning`.
-        now : TickState
-            The state of walking.
+        plan, now : callable, TickState
+            Plans a transition, as for `TransitionScheduler.advance_planning`; the state of walking.
 
         Returns
         -------

@@ -57,10 +57,8 @@ class StanceTarget(NamedTuple):
 
         Parameters
         ----------
-        other : StanceTarget
-            The end of the path.
-        fraction : float
-            0 for this stance, 1 for the other.
+        other, fraction : StanceTarget, float
+            The end of the path; 0 for this stance, 1 for the other.
         """
         return StanceTarget(*(here + fraction * (there - here) for here, there in zip(self, other, strict=True)))
 
@@ -113,10 +111,8 @@ def balanced_fraction(
     ----------
     check : StabilityCheck
         The check against tipping over.
-    start, end : StanceTarget
-        Both ends of the path.
-    fraction : float
-        A fraction at which it tips over.
+    start, end, fraction : StanceTarget, StanceTarget, float
+        Both ends of the path; a fraction at which it tips over.
     """
     # Stability margin to spare leaves the feet room to step.
     margin = check.least_margin + _STEP_MARGIN * float(np.abs(start.rest - np.roll(start.rest, 1)).max())
@@ -154,10 +150,8 @@ def first_increment(robot: Robot, start: StanceTarget, end: StanceTarget, fracti
     ----------
     robot : Robot
         A single robot.
-    start, end : StanceTarget
-        Both ends of the path.
-    fraction : float
-        The fraction that is feasible.
+    start, end, fraction : StanceTarget, StanceTarget, float
+        Both ends of the path; the fraction that is feasible.
     """
     parts = fraction * _SHORTER
     moved = np.abs(end.rest - start.rest).max()

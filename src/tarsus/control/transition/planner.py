@@ -54,10 +54,8 @@ class TransitionPlanner:
 
     Parameters
     ----------
-    robot, joint_limits : Robot, JointLimits
-        A single robot; greatest speed and acceleration of each joint.
-    foot_distance : float
-        Least distance between two feet [m].
+    robot, joint_limits, foot_distance : Robot, JointLimits, float
+        A single robot; greatest speed and acceleration of each joint; least distance between two feet [m].
     """
 
     def __init__(self, robot: Robot, joint_limits: JointLimits, *, foot_distance: float) -> None:
@@ -68,10 +66,8 @@ class TransitionPlanner:
 
         Parameters
         ----------
-        setup : WalkSetup
-            Gait and heights.
-        stance_width : float
-            Distance that the feet rest farther out than by default [m].
+        setup, stance_width : WalkSetup, float
+            Gait and heights; distance that the feet rest farther out than by default [m].
         cycle_time : float or None
             Duration of a cycle [s]; None for the one with the highest top speed.
 

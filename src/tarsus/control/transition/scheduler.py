@@ -73,10 +73,8 @@ class TransitionScheduler:
         ----------
         command : Command
             The command; what is None in it stays as it is.
-        excluded : tuple of int
-            Legs to take out of the gait.
-        correction : tuple of float
-            Shift of the body over the feet that bear load.
+        excluded, correction : tuple of int, tuple of float
+            Legs to take out of the gait; shift of the body over the feet that bear load.
 
         Raises
         ------

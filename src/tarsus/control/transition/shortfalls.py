@@ -76,10 +76,8 @@ def rejection_limitations(
 
     Parameters
     ----------
-    asked : WalkParameters
-        What is rejected.
-    current : WalkParameters
-        What is in force.
+    asked, current : WalkParameters, WalkParameters
+        What is rejected; what is in force.
     posture : array, shape (7,), or None
         The posture that is in force; None where it would have stayed.
     cause : Cause

@@ -36,10 +36,8 @@ def excluded_legs(command: Command, before: tuple[int, ...], legs: int) -> tuple
 
     Parameters
     ----------
-    command : Command
-        The command.
-    before : tuple of int
-        The legs taken out so far.
+    command, before : Command, tuple of int
+        The command; the legs taken out so far.
     legs : int
         Number of legs.
 
@@ -102,10 +100,8 @@ class FootTargets:
 
         Parameters
         ----------
-        excluded : tuple of int
-            The legs.
-        state : GaitState
-            The state of the walk.
+        excluded, state : tuple of int, GaitState
+            The legs; the state of the walk.
         """
         stopped = {leg: motion.stopped() for leg, motion in self._motions.items() if leg not in excluded}
         self._motions = stopped | {leg: self._motions.get(leg) or begin_foot_target(state, leg) for leg in excluded}
@@ -162,10 +158,8 @@ class FootTargets:
 
         Parameters
         ----------
-        state, time : GaitState, float
-            The state of the walk after that time; the time [s].
-        swing_time : float
-            Duration of a swing [s].
+        state, time, swing_time : GaitState, float, float
+            The state of the walk after that time; the time [s]; duration of a swing [s].
         """
         if not self._motions:
             return state

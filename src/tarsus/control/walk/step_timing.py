@@ -118,10 +118,8 @@ class StepTiming(NamedTuple):
 
         Parameters
         ----------
-        state : GaitState
-            All feet are down.
-        leg : int
-            The leg that lifts first.
+        state, leg : GaitState, int
+            All feet are down; the leg that lifts first.
         """
         offsets, duty_factor = np.asarray(self.gait.offsets), self.gait.duty_factor
         shifted = state.shift is not NO_SHIFT and bool(state.shift.value.any())
@@ -154,10 +152,8 @@ class NextLift:
 
         Parameters
         ----------
-        timing, state : StepTiming, GaitState
-            The gait and its frequency; the gait state.
-        dt : float
-            The time [s].
+        timing, state, dt : StepTiming, GaitState, float
+            The gait and its frequency; the gait state; the time [s].
         """
         steps = timing.gait, state.down, state.step_number
         if not self._steps or any(map(is_not, steps, self._steps)):

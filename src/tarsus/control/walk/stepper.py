@@ -37,10 +37,8 @@ def advance(state: GaitState, inputs: StepInputs, dt: float) -> GaitState:
 
     Parameters
     ----------
-    state, inputs : GaitState, StepInputs
-        The gait state; what is constant for the time.
-    dt : float
-        The time [s].
+    state, inputs, dt : GaitState, StepInputs, float
+        The gait state; what is constant for the time; the time [s].
     """
     twist, travel = state.twist.step_with_integral(inputs.twist, dt, bandwidth=inputs.bandwidth)
     if inputs.felt is not None:
@@ -120,10 +118,8 @@ def stance_tolerance(state: GaitState, *, scale: float, stands: bool = False) ->
 
     Parameters
     ----------
-    state : GaitState
-        The gait state.
-    scale : float
-        By how much lengths are smaller than given, on short legs, 0 to 1.
+    state, scale : GaitState, float
+        The gait state; by how much lengths are smaller than given, on short legs, 0 to 1.
     stands : bool
         Whether the foot has been at it.
     """

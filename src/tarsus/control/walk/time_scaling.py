@@ -78,10 +78,8 @@ class TimeScaling:
         ----------
         integrate : callable
             Returns the state after a time of the walk [s].
-        solve : callable
-            Returns the joint angles of a state: array, shape (legs, 3) [rad].
-        dt : float
-            Length of the tick [s].
+        solve, dt : callable, float
+            Returns the joint angles of a state: array, shape (legs, 3) [rad]; length of the tick [s].
         """
         self._clear -= dt
         looks = self._used > _HIGH and self._clear <= 0.0

@@ -60,10 +60,8 @@ def moved_vertically(state: GaitState, inputs: StepInputs, dt: float) -> GaitSta
 
     Parameters
     ----------
-    state, inputs : GaitState, StepInputs
-        The gait state after the time, but for heights; what is constant for the time.
-    dt : float
-        The time [s].
+    state, inputs, dt : GaitState, StepInputs, float
+        The gait state after the time, but for heights; what is constant for the time; the time [s].
     """
     felt = inputs.felt
     if felt is None:

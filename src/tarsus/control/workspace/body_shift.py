@@ -31,12 +31,8 @@ def stance_shift(gait: Gait, stance: StanceGeometry, centre: complex, room: floa
 
     Parameters
     ----------
-    gait : Gait
-        A gait with a body shift.
-    stance : StanceGeometry
-        The body and the rest footholds.
-    centre : complex
-        Projection of the centre of mass [m].
+    gait, stance, centre : Gait, StanceGeometry, complex
+        A gait with a body shift; the body and the rest footholds; projection of the centre of mass [m].
     room : float
         Least distance of a rest foothold from the sides of its polygon [m].
     """
@@ -74,9 +70,7 @@ def displaced(stance: StanceGeometry, displacement: complex) -> StanceGeometry:
 
     Parameters
     ----------
-    stance : StanceGeometry
-        The stance.
-    displacement : complex
-        Displacement [m].
+    stance, displacement : StanceGeometry, complex
+        The stance; displacement [m].
     """
     return stance._replace(position=stance.position + np.array([displacement.real, displacement.imag, 0.0]))

@@ -68,12 +68,8 @@ def cycle_timing(
     ----------
     robot, gait : Robot, Gait
         A single robot; order of the steps.
-    stance : StanceGeometry
-        Body and rest footholds.
-    limits : VelocityLimits
-        Polygons of the feet.
-    joint_limits : JointLimits
-        Limits of the joints' motion.
+    stance, limits, joint_limits : StanceGeometry, VelocityLimits, JointLimits
+        Body and rest footholds; polygons of the feet; limits of the joints' motion.
     cycle_time : float, optional
         Commanded duration of a cycle [s]; left out, the one of the fastest walk: a shorter one is limited by the
         joints to shorter strokes, a longer one by the reach of the legs.
@@ -181,10 +177,8 @@ class SteadyCycle:
         ----------
         robot, stance : Robot, StanceGeometry
             A single robot; body and rest footholds.
-        part : slice
-            Selects the moves.
-        joint_limits : JointLimits
-            Limits of the joints' motion.
+        part, joint_limits : slice, JointLimits
+            Selects the moves; limits of the joints' motion.
 
         Returns
         -------

@@ -46,10 +46,8 @@ def foot_workspace(
 
     Parameters
     ----------
-    robot, stance : Robot, StanceGeometry
-        A single robot; the body and the rest footholds.
-    foot_distance : float
-        Least distance between two feet [m].
+    robot, stance, foot_distance : Robot, StanceGeometry, float
+        A single robot; the body and the rest footholds; least distance between two feet [m].
 
     Returns
     -------

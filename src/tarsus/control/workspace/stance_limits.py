@@ -74,10 +74,8 @@ def shifted_limits(
     ----------
     robot, gait : Robot, Gait
         A single robot; a gait with a body shift.
-    stance : StanceGeometry
-        The body, without its shift, and the rest footholds.
-    foot_distance : float
-        Least distance between two feet [m].
+    stance, foot_distance : StanceGeometry, float
+        The body, without its shift, and the rest footholds; least distance between two feet [m].
     """
     sides = yield from foot_workspace(robot, stance, foot_distance=foot_distance)
     everywhere = StabilityCheck(robot, np.ones((1, robot.legs), dtype=bool))
