@@ -14,7 +14,7 @@ import pytest
 from gymnasium.utils.env_checker import check_env
 
 from tarsus.control.walk_controller import WalkController
-from tarsus.errors import InputError, TarsusError, UnknownNameError
+from tarsus.errors import InputError, SimulationError, TarsusError, UnknownNameError
 from tarsus.kinematics.mass import total_mass
 from tarsus.robot.file import load_robot
 from tarsus.simulation import ServoModel, SimulatedPlant
@@ -218,6 +218,20 @@ def test_what_becomes_unstable_has_fallen(joint):
     assert joint.observation_space.contains(observation)
 
 
+def test_an_episode_that_ends_unstable_leads_to_no_higher_level(monkeypatch):
+    env = WalkEnv(STRIDER, sensors="blind", terrain=TerrainCurriculum([Flat(), Flat(), Flat()], level=1))
+    env.reset(seed=1, options=FORWARD)
+    for _ in range(150):
+        env.step(NOTHING)
+
+    def unstable(*_):
+        raise SimulationError("unstable")
+
+    monkeypatch.setattr(env.plant, "execute", unstable)
+    assert env.step(NOTHING)[2]
+    assert env.reset(options=FORWARD)[1]["level"] == 0
+
+
 @pytest.mark.no_cover
 def test_the_scripted_policy_and_no_residual_follow_commands_on_flat_ground():
     options = {"sensors": "blind", "max_episode_steps": 150, "commands": CommandSampler(standing=0.0)}
@@ -380,6 +394,17 @@ def test_height_fields_are_terrains_of_the_environment():
     env.reset(seed=1)
     env.reset()
     assert env.plant.terrain is ground
+
+
+def test_each_of_many_environments_has_its_own_level():
+    curriculum = TerrainCurriculum([Flat(), Flat(), Flat()])
+    many = WalkVectorEnv(2, terrain=curriculum, sensors="blind", threads=1)
+    many.reset(seed=1, options=FORWARD)
+    for _ in range(150):
+        many.step(np.zeros((2, 18), dtype=np.float32))
+    assert many.reset()[1]["level"].tolist() == [1, 1]
+    assert curriculum.level == 0
+    many.close()
 
 
 @pytest.mark.parametrize("threads", [1, 2])

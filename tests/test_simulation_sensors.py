@@ -61,6 +61,14 @@ def test_a_slow_sensor_repeats_its_reading_with_its_age():
     )
 
 
+@pytest.mark.parametrize("rate", [99.0, 60.0, 30.0, 7.0])
+def test_a_sensor_measures_at_its_rate_whatever_the_ticks(rate):
+    found = readings(SensorSuite(attitude=Sensor(rate=rate)), {"attitude": ramp}, ticks=1000)
+    times = {each.attitude[0] for each in found}
+    assert len(times) == pytest.approx(10 * rate, abs=1.5)
+    assert max(each.age["attitude"] for each in found if each.age) < 1 / rate
+
+
 def test_a_lost_measurement_repeats_the_last_one():
     found = readings(SensorSuite(attitude=Sensor(dropout=0.2)), {"attitude": ramp}, ticks=1000)
     stale = [each for each in found if each.age != 0.0]

@@ -181,7 +181,7 @@ class WalkEnv(gymnasium.Env[Any, Any]):
             self.curriculum.go_to(self._first_level if level is None else int(level))
         elif self._asked > 0:
             covered = self._covered / self._asked
-            self.curriculum.finish(covered, fallen=self.motion.fallen, random=random)
+            self.curriculum.finish(covered, fallen=self._crashed or self.motion.fallen, random=random)
         domain = self._domain
         if self._randomisation is not None:
             domain = self._randomisation.sample(self.robot, domain.servos, random)
@@ -219,6 +219,7 @@ class WalkEnv(gymnasium.Env[Any, Any]):
             self.readings = self.plant.execute(targets, DT)
         except SimulationError:
             # What no longer can be simulated has fallen.
+            self._crashed = True
             return self._observation(), self._reward.fall, True, False, self._info({"fall": self._reward.fall})
         self.motion.update(DT)
         terms = self._reward.terms(self.plant, self.motion, self.command, rates)
@@ -244,7 +245,7 @@ class WalkEnv(gymnasium.Env[Any, Any]):
         self.command = np.zeros(3)
         self._kept = None
         self._elapsed, self._until = 0.0, math.inf
-        self._asked, self._covered = 0.0, 0.0
+        self._asked, self._covered, self._crashed = 0.0, 0.0, False
 
     def _choose_command(self) -> None:
         """Take the next command, and set when it ends."""
@@ -294,7 +295,8 @@ class WalkEnv(gymnasium.Env[Any, Any]):
 
 def _curriculum(terrain: Terrain | Sequence[Terrain] | TerrainCurriculum | None) -> TerrainCurriculum:
     if isinstance(terrain, TerrainCurriculum):
-        return terrain
+        # Each environment has its own level.
+        return TerrainCurriculum(terrain.levels, level=terrain.level)
     if terrain is None:
         return TerrainCurriculum()
     return TerrainCurriculum([terrain] if isinstance(terrain, Terrain) else terrain)

@@ -72,7 +72,7 @@ class _Channel:
 
     def __init__(self, name: str, sensor: Sensor | FootSwitch, exact: Any, random: np.random.Generator) -> None:
         self.name = name
-        self._delay, self._pause = sensor.delay - _SAME_TIME, 1 / sensor.rate - _SAME_TIME
+        self._delay, self._period = sensor.delay - _SAME_TIME, 1 / sensor.rate
         self._threshold = sensor.threshold if isinstance(sensor, FootSwitch) else None
         self._resolution = sensor.resolution if isinstance(sensor, Sensor) else 0.0
         shape = np.shape(exact() if callable(exact) else exact)
@@ -84,8 +84,9 @@ class _Channel:
     def read(self, time: float, exact: Any) -> tuple[Any, float]:
         """Take a measurement, unless it is not due yet or is lost; return the newest that has arrived, and its age."""
         waiting = self._waiting
-        if time - self._taken >= self._pause:
-            self._taken = time
+        if time - self._taken >= self._period - _SAME_TIME:
+            # Times of measurements do not add up what a tick is late.
+            self._taken = max(self._taken + self._period, time - self._period) if self._period else time
             if self._lost is None or not next(self._lost):
                 waiting.append((time, self._disturbed(exact)))
         newest = time - self._delay
