@@ -416,6 +416,22 @@ def test_an_environment_is_ground_under_each_leg_and_tilt():
     assert measured["attitude"] == pytest.approx((0.11, -0.02))
 
 
+@pytest.mark.parametrize("yaw", [0.0, 1.0, math.pi])
+def test_the_slope_of_the_ground_does_not_turn_with_the_body(yaw):
+    robot = load_robot("strider")
+    environment, output = Environment(robot), robot_controller.RobotController(robot).output
+    for leg, place in enumerate(output.feet):
+        environment.set_ground(leg, 0.1 * place[0])
+    environment.set_tilt(0.0, 0.0)
+    turned = Pose.from_rpy(yaw=yaw)
+    output = SimpleNamespace(feet=output.feet, body=turned, contacts=output.contacts)
+    # The normal of ground that rises along x, in the body's frame.
+    normal = turned.rotation.T @ Pose.from_rpy(pitch=-math.atan(0.1)).rotation[:, 2]
+    roll, pitch = environment.readings(output)["attitude"]
+    found = Pose.from_rpy(roll, pitch, 0.0).rotation[:, 2]
+    np.testing.assert_allclose(found, normal, atol=1e-3)
+
+
 def test_an_environment_refuses_what_can_not_be():
     environment = Environment(load_robot("strider"))
     for leg in (6, -1, "front left"):

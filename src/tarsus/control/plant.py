@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import cmath
 import math
 from typing import TYPE_CHECKING, Any, Protocol, runtime_checkable
 
@@ -92,7 +93,7 @@ class Environment:
         Parameters
         ----------
         roll, pitch : float
-            Left side up, front down [rad].
+            Left side up, front down, as the robot sees it wherever it turns [rad].
         """
         self._tilt, self._attitude = np.array([_finite("roll", roll), _finite("pitch", pitch)]), True
 
@@ -127,12 +128,14 @@ class Environment:
         return leg
 
     def _tilted(self, output: ControlOutput) -> RollPitch:
-        """Return roll and pitch: those in G, of the ground, and of its plane against that of the feet [rad]."""
-        roll, pitch = (np.asarray(output.body.rpy)[:2] + self._tilt).tolist()
+        """Return roll and pitch: the body's, the ground's, and those of its plane against that of the feet [rad]."""
+        roll, pitch, yaw = np.asarray(output.body.rpy).tolist()
         feet, height = output.feet[output.contacts], self._height[output.contacts]
         over = feet - feet.mean(axis=0)
         slope_x, slope_y = np.linalg.lstsq(over[:, :2], over[:, 2] - height, rcond=None)[0].tolist()
-        return roll - math.atan(slope_y), pitch + math.atan(slope_x)
+        # The feet are in G, the tilt is about the body's axes.
+        tilt = complex(-math.atan(slope_y), math.atan(slope_x)) * cmath.exp(-1j * yaw) + complex(*self._tilt)
+        return roll + tilt.real, pitch + tilt.imag
 
     def _loads(self, feet: Float[np.ndarray, "legs 3"], bears: Bool[np.ndarray, "legs"]) -> Float[np.ndarray, "legs"]:
         """Return the ground's vertical forces on the feet ``(legs,)`` [N]."""
