@@ -200,6 +200,22 @@ def test_readings_that_were_rejected_for_a_moment_leave_no_command_unmet():
     assert recording.ok, recording.problems
 
 
+def test_what_was_limited_until_shortly_before_its_command_was_replaced_is_met():
+    controller = RobotController(STRIDER)
+    limitation = Limitation(kind=LimitationKind.TWIST, cause="reach", asked=1.0, granted=0.5)
+    for last, unmet in ((4, 0), (9, 1)):
+        recorder = Recorder(controller)
+        recorder.command(Command(twist=FORWARD))
+        for tick in range(11):
+            found = (limitation,) if tick <= last else ()
+            recorder.tick(
+                0.01 * (tick + 1), dataclasses.replace(controller.output, limitations=found), SensorReadings()
+            )
+        assert len(recorder.recording(name="", rate=100.0).unmet) == unmet
+        recorder.command(Command(twist=(0.0, 0.0, 0.0)))
+        assert len(recorder._unmet) == unmet
+
+
 def test_joint_angles_that_are_not_measured_of_a_leg_are_recorded_as_missing():
     class Deaf(IdealPlant):
         def step(self, output, dt):

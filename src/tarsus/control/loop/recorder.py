@@ -82,11 +82,17 @@ class Recorder:
         """
         if command is self._command:
             return
-        for since, _, _, limitation in self._present.values():
+        for since, limitation in self._limited:
             new, old = (_part(each, limitation.kind) for each in (command, self._command))
             if new is not None and new != old:
                 self._note_unmet(since, limitation)
         self._command = command
+
+    @property
+    def _limited(self) -> list[tuple[float, Limitation]]:
+        """Limitations of the last two ticks, as some come and go from tick to tick, and since when they are there."""
+        lately = self._times[-2:][0]
+        return [(since, limitation) for since, _, last, limitation in self._present.values() if last >= lately]
 
     def _note_unmet(self, since: float, limitation: Limitation) -> None:
         key = (*limitation.key, since)
@@ -142,7 +148,7 @@ class Recorder:
         name, rate : str, float
             What the run is called; nominal ticks per second [1/s].
         """
-        for since, _, _, limitation in self._present.values():
+        for since, limitation in self._limited:
             self._note_unmet(since, limitation)
         outputs = self._outputs
         twist = np.array([output.twist for output in outputs])
