@@ -177,7 +177,7 @@ def test_places_out_of_reach_on_level_ground_do_not_tell_how_low_a_leg_reaches()
 def test_the_centre_of_mass_is_over_the_feet_along_gravity(roll, pitch):
     down = np.asarray(tarsus.Pose.from_rpy(roll, pitch).inverse() @ np.array([0.0, 0.0, -1.0]))
     x, y, _ = down * 0.1 / -down[2]
-    found = along_gravity(0.02 + 0.01j, (0.01, -0.02, 0.1), (roll, pitch))
+    found = along_gravity(0.02 + 0.01j, (0.01, -0.02, 0.1, 0.0, 0.0, 0.0, 0.03), (roll, pitch))
     assert found == pytest.approx(complex(0.03 + x, -0.01 + y), rel=0.02)
 
 

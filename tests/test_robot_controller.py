@@ -343,6 +343,33 @@ def test_readings_of_the_ground_reach_the_walk_controller():
     assert output.feet[0, 2] < output.feet[2, 2] - 0.01
 
 
+def test_readings_that_tell_nothing_of_the_ground_are_named_where_they_are_rejected():
+    controller = RobotController(STRIDER)
+    output = controller.step(STILL, DT, SensorReadings(joint_angles=np.full((6, 3), math.nan)))
+    assert {each.kind for each in output.limitations} == {LimitationKind.READINGS}
+    assert output.limitations[0].cause == "joint_angles of LF: not finite numbers"
+    output = controller.step(STILL, DT, SensorReadings(joint_angles=np.full((6, 3), math.nan), attitude=(0.0, 0.0)))
+    assert len(output.limitations) == 6
+
+
+def test_a_foot_stays_where_velocities_have_moved_it_whatever_was_its_target_before():
+    controller = RobotController(STRIDER, Gait.named("wave"))
+
+    def height(command, seconds):
+        for _ in range(round(seconds / DT)):
+            controller.step(command, DT)
+        return controller.output.feet[0, 2]
+
+    height(Command(foot_targets={0: (0.25, 0.2, 0.06)}), 4)
+    moved = height(Command(foot_velocities={0: (0.0, 0.0, 0.03)}), 2)
+    assert moved > 0.1
+    assert height(Command(), 3) == pytest.approx(moved, abs=0.015)
+    height(Command(foot_targets={0: None}), 8)
+    moved = height(Command(foot_velocities={0: (0.0, 0.0, 0.03)}), 5)
+    assert moved > 0.03
+    assert height(Command(), 3) > 0.9 * moved
+
+
 @pytest.mark.no_cover
 def test_a_robot_that_feels_uneven_ground_sits_down_over_all_feet_that_stand():
     controller, plant, states = RobotController(STRIDER), IdealPlant(STRIDER), []

@@ -88,7 +88,13 @@ class FootLoads:
         return found
 
     def offsets(
-        self, valid: ValidReadings, angles: Float[np.ndarray, "legs 3"], state: GaitState, dt: float
+        self,
+        valid: ValidReadings,
+        angles: Float[np.ndarray, "legs 3"],
+        state: GaitState,
+        dt: float,
+        *,
+        out: Sequence[int] = (),
     ) -> Float[np.ndarray, "legs"] | None:
         """Return the upward offsets of compliant feet by measured forces, or by joint torques [m]; None of stiff ones.
 
@@ -100,6 +106,8 @@ class FootLoads:
             Joint angles [rad].
         state, dt : GaitState, float
             The gait state; length of the tick [s].
+        out : sequence of int
+            Legs that are taken out of the gait: they bear no load.
         """
         if self._filter is None:
             return None
@@ -109,7 +117,7 @@ class FootLoads:
         if forces is None or not self._weight:
             return np.array(self._filter.step((None,) * len(state.foot), dt))
         places = [[foot.real, foot.imag, 0.0] for foot in (state.foot - state.foot.mean()).tolist()]
-        stands = state.down.tolist()
+        stands = [on and leg not in out for leg, on in enumerate(state.down.tolist())]
         expected = zip(forces, balanced_forces(places, stands, [0.0, 0.0], self._weight), stands, strict=True)
         errors = [force[2] - share if force is not None and down else None for force, share, down in expected]
         return np.array(self._filter.step(errors, dt))

@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from tarsus.control.limitation import Limitation, LimitationKind
 from tarsus.control.readings import CHANNELS, SensorReadings, ValidReadings
 from tarsus.control.sensing.body_channels import AngularRateChannel, AttitudeChannel
 from tarsus.control.sensing.channel import Channel
@@ -17,7 +18,7 @@ from tarsus.kinematics.mass import known_weight
 from tarsus.robot.joint_limits import joint_limits
 from tarsus.robot.robot import Robot
 
-__all__ = ["ReadingsValidator"]
+__all__ = ["ReadingsValidator", "rejections"]
 
 # Greatest age of a reading [s].
 _MOST_AGE = 0.1
@@ -111,6 +112,17 @@ class ReadingsValidator:
                 self._channels[index].reset()
                 fresh[index] = None
         return tuple(fresh)
+
+
+def rejections(valid: ValidReadings) -> list[Limitation]:
+    """Return the limitations that name rejected readings.
+
+    Parameters
+    ----------
+    valid : ValidReadings
+        The readings.
+    """
+    return [Limitation(kind=LimitationKind.READINGS, cause=reason) for reason in valid.rejected]
 
 
 class _GroundChannel:

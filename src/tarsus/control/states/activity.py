@@ -9,7 +9,7 @@ import numpy as np
 from tarsus.control.command import Command
 from tarsus.control.limitation import Limitation
 from tarsus.control.readings import SensorReadings, ValidReadings
-from tarsus.control.sensing.validation import ReadingsValidator
+from tarsus.control.sensing.validation import ReadingsValidator, rejections
 from tarsus.control.sequence import MotionSequence, SequencePlayer, SequenceSample
 from tarsus.control.startup import fold, sit_down
 from tarsus.control.states.robot_state import RobotState
@@ -120,6 +120,7 @@ class Walking:
     def snapshot(self) -> Snapshot:
         """The robot now."""
         walk = self.controller
+        unread = () if walk.feels_ground else rejections(self.measured)
         vx, vy, wz = walk.twist.tolist()
         return Snapshot(
             walk.angles,
@@ -130,7 +131,7 @@ class Walking:
             state=RobotState.STANDING if self.stands else RobotState.WALKING,
             activity=walk.walk_state.value,
             twist=(vx, vy, wz),
-            limitations=walk.limitations,
+            limitations=(*walk.limitations, *unread),
             felt=walk.feels_ground,
         )
 

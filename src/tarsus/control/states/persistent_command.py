@@ -58,6 +58,7 @@ class PersistentCommand:
             changes["state"] = requested_state(command.state)
         targets = {**(self.full.foot_targets or {}), **(command.foot_targets or {})}
         velocities = command.foot_velocities
+        targets = {leg: point for leg, point in targets.items() if leg not in (velocities or {})}
         for leg in (*targets, *(velocities or {})):
             require_leg_number("foot_targets", leg, legs)
         return dataclasses.replace(

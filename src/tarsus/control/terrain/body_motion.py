@@ -17,7 +17,7 @@ from tarsus.control.terrain.ground_map import GroundMap
 from tarsus.control.terrain.reach import Reach
 from tarsus.control.terrain.roughness import GroundAdaptation, Roughness
 from tarsus.control.terrain.slope_limit import SlopeLimit
-from tarsus.control.terrain.support import Footing
+from tarsus.control.terrain.support import Footing, off_commanded
 from tarsus.control.tick_state import TickState
 from tarsus.control.transition.executor import TransitionExecutor
 from tarsus.control.walk.state import PHASE_TOLERANCE, GaitState
@@ -100,8 +100,7 @@ class BodyMotion:
         """
         self._unmeasured += dt
         if attitude is not None:
-            roll, pitch = state.moved_posture[3:5].tolist()
-            self.tilt, self._unmeasured = (attitude[0] - roll, attitude[1] - pitch), 0.0
+            self.tilt, self._unmeasured = off_commanded(attitude, state), 0.0
         elif self.tilt is not None and self._unmeasured > _HOLDS:
             self.tilt = (0.0, 0.0) if self._unmeasured <= _TIMEOUT else None
 

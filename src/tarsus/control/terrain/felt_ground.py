@@ -12,12 +12,12 @@ from tarsus.control.readings import SensorReadings, ValidReadings
 from tarsus.control.sensing.body_condition import BodyCondition
 from tarsus.control.sensing.foot_loads import FootLoads
 from tarsus.control.sensing.swing_monitor import USUAL_LAG, SwingMonitor
-from tarsus.control.sensing.validation import ReadingsValidator
+from tarsus.control.sensing.validation import ReadingsValidator, rejections
 from tarsus.control.terrain.body_motion import BodyMotion
 from tarsus.control.terrain.foot_contacts import Search, sunk_at
 from tarsus.control.terrain.ground_contact import met_ground, not_sunk, put_down
 from tarsus.control.terrain.missing_ground import SLOW, MissingGround
-from tarsus.control.terrain.support import Footing, Support, along_gravity
+from tarsus.control.terrain.support import Footing, Support, along_gravity, off_commanded
 from tarsus.control.tick_state import TickState
 from tarsus.control.transition.executor import TransitionExecutor
 from tarsus.control.transition.foothold_transfer import FootholdTransfer
@@ -83,7 +83,7 @@ class FeltGround:
         self._centre = complex(*centre_of_mass(robot, angles)[:2].tolist())
         # What feet are given while all is as planned; ticks and times since contacts and support were looked at.
         self._inputs: FeltInputs | None = None
-        self._given: tuple[object, ...] = ()
+        self._given, self._excluded = tuple[object, ...](), list[int]()
         self._rests, self._ticks, self._unread, self._idle, self._next_lift = True, 0, 0.0, 0.0, NextLift()
 
     def sense(
@@ -130,7 +130,7 @@ class FeltGround:
         estimated, age = self._loads.estimated, max(valid.contact_age, self._swings.lag - USUAL_LAG)
         self.contacts.step(measured, down, dt, age=age, count=ticks, leaving=leaving, rests=rests, estimated=estimated)
         self.condition.step([*map(self.contacts.touches, range(len(down)))], valid.attitude, dt, held=self.support.held)
-        self.offsets = self._loads.offsets(valid, angles, state, dt)
+        self.offsets = self._loads.offsets(valid, angles, state, dt, out=self._excluded)
         if self.missing.stranded and all(down):
             state = timing.with_first_lift(state, self.missing.stranded[0])
         pace = self.support.pace
@@ -154,7 +154,7 @@ class FeltGround:
         state, standing, timing, footholds = tick.gait, tick.standing, transitions.timing, transitions.footholds
         kept, before, self._idle = self._inputs, self._given, self._idle + dt
         self._still = not any(tick.twist.tolist()) or (self.body.slope.refuses and self.support.halts)
-        self._given = (excluded, standing)
+        self._given, self._excluded = (excluded, standing), excluded
         self._rests = self._still and not (self.missing.refuses or self.missing.places)
         if kept and self._given == before and (standing or not self._next_lift.is_due(timing, state, dt)):
             self._inputs = kept = kept.moved_by(self.body.rates.climb, self.body.rates.turn)
@@ -165,7 +165,7 @@ class FeltGround:
         footing = Footing(
             state.in_heading(state.foot).tolist(),
             [on and step for on, step in zip(state.down.tolist(), steps, strict=True)],
-            along_gravity(self._centre, state.moved_posture[:3].tolist(), self.body.tilt or (0.0, 0.0)),
+            along_gravity(self._centre, state.moved_posture.tolist(), self.body.tilt or (0.0, 0.0)),
             float(state.posture.value[2]),
         )
         if self.body.looks:
@@ -216,7 +216,9 @@ class FeltGround:
         """Decide where feet step that find no ground; return which stand, or would, with the robot in the air."""
         contacts, missing, deeper = self.contacts, self.missing, self.body.roughness.deeper
         near = not_sunk(state, self.body, footing, tips=bool(missing.tips or missing.places))
-        contacts.find_open(footing._replace(down=near), self.measured.attitude, dt)
+        attitude = self.measured.attitude
+        tilt = None if attitude is None else off_commanded(attitude, state)
+        contacts.find_open(footing._replace(down=near), tilt, dt)
         missing.twist = state.twist.value.tolist()
         missing.turn_to(state.yaw)
         if self.condition.carried:
@@ -272,8 +274,9 @@ class FeltGround:
     @property
     def limitations(self) -> tuple[Limitation, ...]:
         """Readings that are rejected, and what the ground does not allow."""
-        found = [Limitation(kind=LimitationKind.READINGS, cause=reason) for reason in self.measured.rejected]
-        found += self.condition.limitations + self.body.limitations + self.missing.limitations
+        found = (
+            rejections(self.measured) + self.condition.limitations + self.body.limitations + self.missing.limitations
+        )
         explained = self.condition.in_air or self.missing.refuses or self.missing.limitations
         if self.support.pace < SLOW and not explained:
             slope, unheld = self.body.slope, "the feet on the ground do not hold the robot"

@@ -8,8 +8,9 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 from tarsus.control.readings import RollPitch
+from tarsus.control.walk.state import GaitState
 
-__all__ = ["HALTING", "Footing", "Support", "along_gravity", "holds"]
+__all__ = ["HALTING", "Footing", "Support", "along_gravity", "holds", "off_commanded"]
 
 # Rates at which the pace falls and rises [1/s].
 _FALL, _RISE = 10.0, 6.0
@@ -59,18 +60,31 @@ def holds(feet: Sequence[complex], centre: complex) -> bool:
     return max(gaps) < math.pi - _LEAST_ANGLE
 
 
-def along_gravity(centre: complex, position: Sequence[float], tilt: RollPitch) -> complex:
+def along_gravity(centre: complex, posture: Sequence[float], tilt: RollPitch) -> complex:
     """Return where a point of the body is above its feet along gravity, x + iy in the heading frame [m].
 
     Parameters
     ----------
-    centre, position : complex, (x, y, z)
-        The point in the body's frame; position of the body, z over the feet [m].
+    centre, posture : complex, (x, y, z, roll, pitch, yaw, swing height)
+        The point in the body's frame; posture of the body, z over the feet [m], [rad].
     tilt : (roll, pitch)
         By how much the body is tilted more than commanded [rad].
     """
-    (x, y, height), (roll, pitch) = position, tilt
-    return centre + complex(x + height * math.tan(pitch), y - height * math.tan(roll))
+    (x, y, height, _, _, yaw, _), (roll, pitch) = posture, tilt
+    return centre * cmath.exp(1j * yaw) + complex(x + height * math.tan(pitch), y - height * math.tan(roll))
+
+
+def off_commanded(attitude: RollPitch, state: GaitState) -> RollPitch:
+    """Return by how much a body is tilted more than commanded, about the axes of the heading frame [rad].
+
+    Parameters
+    ----------
+    attitude, state : (roll, pitch), GaitState
+        Measured, about the body's axes [rad]; the gait state.
+    """
+    roll, pitch, yaw = state.moved_posture[3:6].tolist()
+    off = complex(attitude[0] - roll, attitude[1] - pitch) * cmath.exp(1j * yaw)
+    return off.real, off.imag
 
 
 class Support:
