@@ -537,6 +537,19 @@ class ObliqueEdge:
         spec.worldbody.add_geom(type=kind, size=(2.0, 4.0, 0.25), pos=place, quat=turn, **attributes)
 
 
+@pytest.mark.no_cover
+def test_a_robot_that_stands_at_an_edge_follows_a_body_pose():
+    walk = Walk(terrain.Step(rise=-0.3, start=0.6))
+    walk.go(0.15, 6.0)
+    assert walk.named
+    before, twist = walk.controller._activity.controller._tick.gait.posture.value, (0.15, 0.0, 0.0)
+    for _ in range(300):
+        command = tarsus.Command(twist=twist, body=(0.0, 0.0, 0.01, 0.0, 0.05, 0.0))
+        walk.output = walk.controller.step(command, 0.01, walk.plant.step(walk.output, 0.01))
+    after = walk.controller._activity.controller._tick.gait.posture.value
+    assert (after - before)[[2, 4]] == pytest.approx((0.01, 0.05), abs=1e-3)
+
+
 def test_a_robot_comes_back_whose_foot_has_found_no_ground_at_any_place_behind_an_oblique_edge():
     walk = Walk(ObliqueEdge())
     stopped = walk.go(0.26, 5.5)

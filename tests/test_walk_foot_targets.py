@@ -6,6 +6,9 @@ import pytest
 from tarsus import Gait, load_robot
 from tarsus.control.command import Command
 from tarsus.control.limitation import Limitation
+from tarsus.control.plant import IdealPlant
+from tarsus.control.pose.admittance import Admittance
+from tarsus.control.readings import SensorReadings
 from tarsus.control.walk_controller import WalkController
 from tarsus.errors import InputError
 from walk_trace import Trace
@@ -78,6 +81,66 @@ def test_a_point_holds_until_there_is_another():
     walk(controller, Command(foot_targets={0: (0.2, 0.22, 0.1)}), DT)
     walk(controller, Command(twist=(0.01, 0, 0)), 4)
     np.testing.assert_allclose(in_heading_frame(controller, 0), (0.2, 0.22, 0.1), atol=1e-3)
+
+
+@pytest.mark.parametrize("aside", [0.0, 0.01])
+def test_a_leg_that_is_released_above_its_rest_foothold_goes_down_without_sensors_too(aside):
+    controller = WalkController(load_robot("strider"), Gait.named("wave"))
+    x, y, _ = in_heading_frame(controller, 0)
+    walk(controller, Command(foot_targets={0: (x + aside, y, 0.06)}), 4)
+    assert in_heading_frame(controller, 0)[2] > 0.055
+    walk(controller, Command(foot_targets={0: None}), 6)
+    assert abs(in_heading_frame(controller, 0)[2]) < 1e-6
+    assert controller.contacts.all()
+    walk(controller, Command(body_height=0.12), 5)
+    assert controller.body.position[2] == pytest.approx(0.12, abs=1e-3)
+
+
+def test_a_foot_that_is_to_move_too_fast_says_so_and_stops_where_it_is_held():
+    controller = WalkController(load_robot("strider"), Gait.named("wave"))
+    walk(controller, Command(foot_velocities={0: (0.0, 0.0, 0.05)}), 2.5)
+    walk(controller, Command(foot_velocities={0: (0.0, 0.0, 0.0)}), 2)
+    before = in_heading_frame(controller, 0)
+    walk(controller, Command(foot_velocities={0: (-0.4, 0.0, 0.0)}), 0.3)
+    (found,) = controller.limitations
+    assert found.granted == pytest.approx(0.3)
+    assert "feet out of the gait move at 120 mm/s at most" in found.text()
+    walk(controller, Command(foot_velocities={0: (0.0, 0.0, 0.0)}), 2)
+    assert not controller.limitations
+    assert before[0] - in_heading_frame(controller, 0)[0] == pytest.approx(0.036, abs=2e-3)
+    # Out of its reach; what is said of it ends with the command.
+    walk(controller, Command(foot_velocities={0: (0.1, 0.0, 0.0)}), 6)
+    assert [each.cause for each in controller.limitations] == ["out of reach"]
+    walk(controller, Command(), 1)
+    assert not controller.limitations
+
+
+def test_a_foot_that_stands_beyond_what_its_leg_should_reach_comes_back():
+    controller = WalkController(load_robot("phantomx"), Gait.named("wave"))
+    walk(controller, Command(), 0.1)
+    lower = controller._tick.gait.ground_height.copy()
+    lower[0] = -0.03
+    controller._tick = controller._tick._replace(gait=controller._tick.gait._replace(ground_height=lower))
+    x, y, _ = in_heading_frame(controller, 0)
+    for _ in range(800):
+        controller.step(Command(foot_targets={0: (x, y, 0.03)}), DT)
+    assert in_heading_frame(controller, 0)[2] == pytest.approx(0.03, abs=1e-3)
+    assert not controller.limitations
+
+
+def test_a_compliant_robot_expects_no_load_on_a_leg_out_of_the_gait():
+    robot = load_robot("strider")
+    controller = WalkController(
+        robot, Gait.named("wave"), admittance=Admittance(mass=1.0, damping=120.0, stiffness=800.0, travel=0.02)
+    )
+    plant = IdealPlant(robot)
+    plant.environment.set_force(0, 0.0)
+    command = Command(foot_targets={0: (0.28, 0.17, 0.06)})
+    for _ in range(600):
+        forces = plant.environment._loads(np.array(controller.feet), np.array(controller.bears & controller.contacts))
+        controller.step(command, DT, SensorReadings(forces=forces))
+    np.testing.assert_allclose(controller._walk.ground.offsets, np.zeros(6), atol=2e-3)
+    assert in_heading_frame(controller, 0)[2] == pytest.approx(0.06, abs=1e-3)
 
 
 def test_two_legs_at_once():

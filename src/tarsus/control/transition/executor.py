@@ -148,7 +148,7 @@ class TransitionExecutor:
         off = np.abs(state.foot - rest)
         off[list(self.current.parameters.excluded)] = 0.0
         near = bool(off.max() <= stance_tolerance(state, scale=self._scale, stands=stands))
-        return near and not (state.felt and self._foot_targets.returning)
+        return near and not self._foot_targets.returning
 
     # Beginning a transition.
 

@@ -13,11 +13,13 @@ from tarsus.kinematics.polygon import hull_margin
 if TYPE_CHECKING:
     from jaxtyping import Bool, Complex, Float
 
-__all__ = ["FootTargetMotion", "begin_foot_target", "best_body_shift"]
+__all__ = ["GREATEST_SPEED", "FootTargetMotion", "begin_foot_target", "best_body_shift"]
 
+GREATEST_SPEED = 0.12
+"""Greatest speed with which a foot follows its target [m/s]."""
 
-# Greatest bandwidth [rad/s] and speed [m/s] with which a foot follows its target.
-_BANDWIDTH, _SPEED = 5.0, 0.12
+# Greatest bandwidth with which it does [rad/s].
+_BANDWIDTH = 5.0
 # Shifts of the body that are tried when legs leave the gait [m].
 _STEPS = np.arange(-4, 5) * 0.01
 _SHIFTS = (_STEPS[:, None] + 1j * _STEPS).ravel()
@@ -47,7 +49,7 @@ class FootTargetMotion(NamedTuple):
         """
         distance = float(np.abs(self.target - self.position.value).max())
         # A critically damped filter with bandwidth 2 v / distance, renewed every tick, reaches speed v and keeps it.
-        bandwidth = min(_BANDWIDTH, 2 * _SPEED / max(distance, 1e-9))
+        bandwidth = min(_BANDWIDTH, 2 * GREATEST_SPEED / max(distance, 1e-9))
         return self._replace(position=self.position.step(self.target, dt, bandwidth=bandwidth))
 
     def stopped(self) -> FootTargetMotion:

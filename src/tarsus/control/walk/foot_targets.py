@@ -10,7 +10,7 @@ import numpy as np
 
 from tarsus.control.command import Command
 from tarsus.control.limitation import Cause, Limitation, LimitationKind
-from tarsus.control.walk.foot_target_motion import FootTargetMotion, begin_foot_target
+from tarsus.control.walk.foot_target_motion import GREATEST_SPEED, FootTargetMotion, begin_foot_target
 from tarsus.control.walk.state import GaitState
 from tarsus.gait.stance.stance_geometry import (
     SWING_HEIGHT,
@@ -27,7 +27,8 @@ if TYPE_CHECKING:
 __all__ = ["FootTargets", "excluded_legs"]
 
 # Fractions of a path that are tested for reach.
-_TRIED = np.arange(1, 17) / 16
+_TRIED = np.arange(17) / 16
+_FASTEST = f"feet out of the gait move at {1e3 * GREATEST_SPEED:.0f} mm/s at most"
 _BELOW_GROUND = "the point is below the ground; the foot stays on it"
 
 
@@ -70,6 +71,7 @@ class FootTargets:
         self._excluded: tuple[int, ...] = ()
         self._points: dict[int, Sequence[float]] = {}
         self._fractions: dict[int, float] = {}
+        self._shares: dict[int, float] = {}
         self._below_ground: list[int] = []
 
     def __bool__(self) -> bool:
@@ -87,11 +89,16 @@ class FootTargets:
 
     @property
     def limitations(self) -> list[Limitation]:
-        """Foot targets that are out of reach or below the ground."""
+        """Foot targets that are out of reach or below the ground, and feet that are to move too fast."""
         kind, names = LimitationKind.FOOT_TARGET, self._robot.leg_names
-        far = [item for item in self._fractions.items() if item[1] < 1]
+        causes = ("out of reach", self._fractions), (_FASTEST, self._shares)
         return [
-            *(Cause("out of reach", names[leg]).limitation(kind, asked=1.0, granted=share) for leg, share in far),
+            *(
+                Cause(cause, names[leg]).limitation(kind, asked=1.0, granted=share)
+                for cause, shares in causes
+                for leg, share in shares.items()
+                if share < 1
+            ),
             *(Limitation(kind=kind, cause=_BELOW_GROUND, leg=names[leg]) for leg in self._below_ground),
         ]
 
@@ -121,18 +128,20 @@ class FootTargets:
         dt : float
             Length of the tick [s].
         """
+        self._fractions, self._shares, self._below_ground = {}, {}, []
         if not (self._points or command.foot_targets or command.foot_velocities):
             return
         velocities = command.foot_velocities or {}
         points = {**self._points, **(command.foot_targets or {})}
         self._points = {leg: point for leg, point in points.items() if point is not None and leg not in velocities}
-        self._below_ground = []
         postures = sway_extremes(posture[: SWING_HEIGHT + 1], sway)
         for leg in self._excluded:
             motion = self._motions[leg]
             start = motion.position.value
             if leg in velocities:
-                end = motion.target + np.array(velocities[leg]) * dt
+                velocity = np.array(velocities[leg])
+                share = self._shares[leg] = min(GREATEST_SPEED / max(float(np.abs(velocity).max()), 1e-9), 1.0)
+                end = motion.target + share * velocity * dt
             elif leg in self._points:
                 end = np.array(self._points[leg])
                 if end[2] < 0:
@@ -150,8 +159,11 @@ class FootTargets:
         rest = np.zeros(self._robot.legs)
         stance = StanceGeometry(rest.astype(complex), rotation, rows[:, :3].T[..., None, None], 0.0)
         points = (start + _TRIED[:, None] * (end - start)).T[..., None] + rest
-        works = (joint_margin(geometry, stance.solve(geometry, *points))[..., leg] >= 0).all(axis=0)
-        return 1.0 if works.all() else float(_TRIED[int(np.argmin(works))] - _TRIED[0])
+        margins = joint_margin(geometry, stance.solve(geometry, *points))[..., leg]
+        # A foot that stands lower or farther out than its leg should reach may come back.
+        works = (margins >= np.minimum(margins[:, :1], 0.0)).all(axis=0)
+        reached = np.logical_and.accumulate(works) & (margins >= 0.0).all(axis=0)
+        return float(_TRIED[reached].max(initial=0.0))
 
     def apply(self, state: GaitState, time: float, *, swing_time: float) -> GaitState:
         """Return the state with the feet taken out of the gait moved by a time, except those that are in a swing again.

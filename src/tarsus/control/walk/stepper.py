@@ -41,6 +41,11 @@ def advance(state: GaitState, inputs: StepInputs, dt: float) -> GaitState:
         The gait state; what is constant for the time; the time [s].
     """
     twist, travel = state.twist.step_with_integral(inputs.twist, dt, bandwidth=inputs.bandwidth)
+    offset, shift = state.admittance_offset, state.shift
+    # The body pose is followed while the walk waits, too.
+    posture = state.posture.settling_step(inputs.posture, dt, bandwidth=inputs.posture_bandwidth)
+    offset = offset.settling_step(inputs.admittance_offset, dt, bandwidth=_ADMITTANCE_BANDWIDTH)
+    shift = shift if inputs.shift is None else shift.settling_step(inputs.shift, dt, bandwidth=_SHIFT_BANDWIDTH)
     if inputs.felt is not None:
         dt, travel = inputs.felt.pace * dt, [inputs.felt.pace * way for way in travel]
     origin, yaw = integrate_twist(state.origin, state.yaw, travel)
@@ -52,16 +57,16 @@ def advance(state: GaitState, inputs: StepInputs, dt: float) -> GaitState:
     if inputs.swaying:
         rates = inputs.frequency * np.array([1.0, inputs.beats])
         rhythm, (cycles, beats) = state.rhythm.step_with_integral(rates, dt, bandwidth=inputs.bandwidth)
-    clock, offset, shift = state.clock + elapsed, state.admittance_offset, state.shift
+    clock = state.clock + elapsed
     after = state._replace(
         clock=clock,
         origin=origin,
         yaw=yaw,
         twist=twist,
-        posture=state.posture.settling_step(inputs.posture, dt, bandwidth=inputs.posture_bandwidth),
+        posture=posture,
         rhythm=rhythm,
-        admittance_offset=offset.settling_step(inputs.admittance_offset, dt, bandwidth=_ADMITTANCE_BANDWIDTH),
-        shift=shift if inputs.shift is None else shift.settling_step(inputs.shift, dt, bandwidth=_SHIFT_BANDWIDTH),
+        admittance_offset=offset,
+        shift=shift,
         cycles=state.cycles + cycles,
         beats=state.beats + beats,
     )
@@ -94,7 +99,8 @@ def _lift(
             state, scale=1.0 if inputs.felt is None else inputs.felt.scale
         )
         # A leg that returns to the gait is over its foothold at best.
-        lifts = lifts & (away if inputs.felt is None else away | ~np.array(inputs.felt.steps))
+        above = state.ground_height > POSITION_TOLERANCE if inputs.felt is None else ~np.array(inputs.felt.steps)
+        lifts = lifts & (away | above)
     missed = due & ~lifts
     start, offset = state.ground_height, state.admittance_offset
     if offset.value.any():
