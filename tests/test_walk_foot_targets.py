@@ -5,7 +5,7 @@ import pytest
 
 from tarsus import Gait, load_robot
 from tarsus.control.command import Command
-from tarsus.control.limitation import Limitation
+from tarsus.control.limitation import Limitation, LimitationKind
 from tarsus.control.plant import IdealPlant
 from tarsus.control.pose.admittance import Admittance
 from tarsus.control.readings import SensorReadings
@@ -48,6 +48,8 @@ def test_the_body_goes_over_the_other_feet_wherever_it_was_commanded_before(body
         # A leg that returns to the gait meanwhile leaves no correction.
         walk(controller, Command(body=pose, foot_targets={0: (0.25, 0.2, 0.08)}), 6)
         places.append(np.array(controller.body.position[:2]))
+        named = [each.cause for each in controller.limitations if each.kind is LimitationKind.BODY]
+        assert ("x and y are those over the feet that stay while a leg is out of the gait" in named) is (x + y != 0.0)
     assert np.abs(places[0]).max() > 0.005
     np.testing.assert_allclose(*places, atol=0.0101)
 

@@ -190,6 +190,7 @@ class WalkController:
         slow = rate < SLOW and bool(self._tick.twist.any())
         return (
             *walk.transitions.limitations,
+            *self._intake.limitations,
             *walk.foot_targets.limitations,
             *self._tick.limitations,
             *walk.ground.limitations,

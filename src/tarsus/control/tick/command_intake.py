@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from tarsus.control.command import Command
+from tarsus.control.limitation import Limitation, LimitationKind
 from tarsus.control.transition.executor import TransitionExecutor
 from tarsus.control.walk.foot_target_motion import best_body_shift
 from tarsus.control.walk.foot_targets import excluded_legs
@@ -21,6 +22,7 @@ if TYPE_CHECKING:
 __all__ = ["CommandIntake"]
 
 _NO_MOTION = (0.0,) * 6
+_SHIFTED = "x and y are those over the feet that stay while a leg is out of the gait"
 
 
 class CommandIntake:
@@ -38,6 +40,12 @@ class CommandIntake:
         # Legs, gait and body pose for which the shift is.
         self._shifted_for: tuple[object, ...] = ()
         self._shift = 0j
+
+    @property
+    def limitations(self) -> tuple[Limitation, ...]:
+        """A body pose that the body can't have while a leg is out of the gait."""
+        moved = self._shifted_for and any(self._transitions.scheduler.requested.body[:2])
+        return (Limitation(kind=LimitationKind.BODY, cause=_SHIFTED),) if moved else ()
 
     def accept(self, command: Command, angles: Float[np.ndarray, "legs 3"]) -> None:
         """Request what is commanded besides the twist, where it differs from what was requested before.
