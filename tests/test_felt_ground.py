@@ -17,7 +17,7 @@ from tarsus.control.sensing.validation import ReadingsValidator
 from tarsus.control.terrain.foot_contacts import FootContacts
 from tarsus.control.terrain.reach import Reach
 from tarsus.control.terrain.roughness import Roughness
-from tarsus.control.terrain.support import Footing, Support, along_gravity, holds
+from tarsus.control.terrain.support import Footing, Support, Tipping, along_gravity, holds
 from tarsus.control.tick_state import TickState
 from tarsus.control.walk.felt_feet import FeltFoot, FeltInputs, GroundUnder, travel_share
 from tarsus.control.walk.vertical_motion import _searching, _swinging
@@ -377,6 +377,29 @@ def test_compliant_feet_yield_to_measured_forces_or_else_to_joint_torques():
     np.testing.assert_array_equal(offsets(ValidReadings()), np.zeros(6))
     assert offsets(pressed)[0] > 0 > offsets(pressed)[1:].max()
     assert np.abs(offsets(driven)).min() > 0
+
+
+def tipped(tilts, *, depth=0.02, scale=1.0):
+    """The leg at which a robot tips whose pitch is this in one tick of 40 ms after the other; None in none."""
+    tipping = Tipping(scale)
+    for pitch in tilts:
+        tipping.step(STANDING, [depth] * 6, None if pitch is None else (0.0, pitch), 0.04)
+    return tipping.leg
+
+
+def test_a_robot_tips_that_sinks_fast_at_a_foot_that_is_low():
+    fast, slow = [0.0, 0.05, 0.1, 0.12], np.linspace(0.0, 0.12, 100).tolist()
+    assert tipped(fast) in (0, 5)
+    assert tipped([-pitch for pitch in fast]) in (2, 3)
+    # Not where it follows a slope, where no foot is low, and where nothing is estimated in between.
+    assert tipped(slow) is None
+    assert tipped(fast, depth=0.005) is None
+    assert tipped([*fast[:2], None, *fast[2:]]) is None
+    assert tipped([0.5 * pitch for pitch in fast]) is None
+    assert tipped([0.5 * pitch for pitch in fast], scale=0.5) in (0, 5)
+    # It is over once the body has come back.
+    assert tipped([*fast, 0.11]) in (0, 5)
+    assert tipped([*fast, 0.03]) is None
 
 
 def test_a_switch_that_stays_open_is_told_by_the_feet_that_its_foot_lifts_off():

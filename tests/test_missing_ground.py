@@ -1,5 +1,6 @@
 """Holes and obstacles: feet step back or try again, and the robot stops and walks away."""
 
+import dataclasses
 from types import SimpleNamespace
 
 import mujoco
@@ -20,7 +21,7 @@ from tarsus.control.terrain.roughness import Roughness
 from tarsus.control.terrain.support import Footing
 from tarsus.control.walk.felt_feet import FeltFoot
 from tarsus.control.walk.step_timing import StepTiming
-from tarsus.simulation import SimulatedPlant, terrain
+from tarsus.simulation import SensorSuite, SimulatedPlant, terrain
 
 NAMES = ("LF", "LM", "LR", "RR", "RM", "RF")
 REST = [0.2 + 0.2j, 0.25j, -0.2 + 0.2j, -0.2 - 0.2j, -0.25j, 0.2 - 0.2j]
@@ -535,6 +536,18 @@ class ObliqueEdge:
         turn, place = (np.cos(np.pi / 12), 0, 0, np.sin(np.pi / 12)), (0.44 - 2 * np.cos(np.pi / 6), -1.0, -0.25)
         kind = mujoco.mjtGeom.mjGEOM_BOX
         spec.worldbody.add_geom(type=kind, size=(2.0, 4.0, 0.25), pos=place, quat=turn, **attributes)
+
+
+@pytest.mark.no_cover
+@pytest.mark.parametrize(("name", "start"), [("strider", 0.5), ("makeyourpet", 0.5), ("phantomx", 0.56)])
+def test_a_robot_without_sensors_in_its_feet_stops_at_an_edge(name, start):
+    robot, sensors = tarsus.load_robot(name), SensorSuite.named("smart")
+    sensors = dataclasses.replace(sensors, attitude=SensorSuite.named("hobby").attitude)
+    speed = 0.5 * tarsus.WalkController(robot).top_speed((1, 0, 0))
+    walk = Walk(terrain.Step(rise=-0.3, start=start), sensors=sensors, robot=robot)
+    stopped = walk.go(speed, 0.7 / speed)
+    assert walk.go(-speed, 0.4 / speed) < stopped - 0.1
+    assert walk.tilt < np.radians(10)
 
 
 @pytest.mark.no_cover

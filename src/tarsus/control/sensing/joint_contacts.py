@@ -23,6 +23,9 @@ _CLEAR, _DOWNWARD, _LANDING = 0.12, 0.45, 0.55
 # Torques on the femur over the load of all legs: of a foot that lands on the ground, of one that stands, and of a
 # rising one that an obstacle stops. A foot that bears little stands: taken for one that hangs, it holds up the walk.
 _CONTACT, _STANDS, _OBSTACLE = 0.12, -0.02, 0.3
+# The torque of a foot that stands until it has borne more than the second for the third [s]: before, it may be over a
+# hole.
+_NEW, _BORNE, _LONG = 0.06, 0.15, 0.03
 # Share of the torque that drives a joint by which the expected one may be wrong.
 _UNSURE = 0.1
 # From a command to the servo's effect: at first, and at most [s]; how fast it, the mean of free swings and the load
@@ -80,6 +83,8 @@ class JointContacts:
         self._least = _LEAST_LOAD * known_weight(robot) * longest
         self.lag, self._load, self._left = _LAG, 0.0, 0.0
         self._familiar, self._mean = True, [0.0] * robot.legs
+        # For how long each foot that should stand has borne load [s].
+        self._borne = [2 * _LONG] * robot.legs
 
     def contacts(
         self, valid: ValidReadings, angles: Float[np.ndarray, "legs 3"], state: GaitState, dt: float
@@ -114,9 +119,11 @@ class JointContacts:
         if self._load < self._least or not self._familiar:
             return None
         touching = list[bool]()
-        for torque, drive, on, swung in zip(off, driven, stands, phases, strict=True):
+        for leg, (torque, drive, on, swung) in enumerate(zip(off, driven, stands, phases, strict=True)):
             rising = not on and swung < _LANDING
-            least = self._load * (_OBSTACLE if rising else _STANDS if on else _CONTACT)
+            self._borne[leg] = (self._borne[leg] + dt * (torque > _BORNE * self._load)) * on
+            stood = _STANDS if self._borne[leg] > _LONG else _NEW
+            least = self._load * (_OBSTACLE if rising else stood if on else _CONTACT)
             touching.append((abs(torque) if rising else torque) > least + _UNSURE * abs(drive))
         return touching
 

@@ -17,7 +17,7 @@ from tarsus.control.terrain.body_motion import BodyMotion
 from tarsus.control.terrain.foot_contacts import Search, sunk_at
 from tarsus.control.terrain.ground_contact import met_ground, not_sunk, put_down
 from tarsus.control.terrain.missing_ground import SLOW, MissingGround
-from tarsus.control.terrain.support import Footing, Support, along_gravity, off_commanded
+from tarsus.control.terrain.support import Footing, Support, Tipping, along_gravity, off_commanded
 from tarsus.control.tick_state import TickState
 from tarsus.control.transition.executor import TransitionExecutor
 from tarsus.control.transition.foothold_transfer import FootholdTransfer
@@ -78,7 +78,7 @@ class FeltGround:
         self.missing = MissingGround(robot.leg_names, scale=body.reach.scale)
         self.measured, self.support, self.condition = ValidReadings(), Support(), BodyCondition()
         self.offsets: Float[np.ndarray, "legs"] | None = None
-        self._validator, self._loads = ReadingsValidator(robot), loads
+        self._validator, self._loads, self._tipping = ReadingsValidator(robot), loads, Tipping(body.reach.scale)
         self._commanded, self._still, self._swings = angles, True, SwingMonitor()
         self._centre = complex(*centre_of_mass(robot, angles)[:2].tolist())
         # What feet are given while all is as planned; ticks and times since contacts and support were looked at.
@@ -229,7 +229,13 @@ class FeltGround:
         missing.sees(self.ground, footholds.rest.tolist())
         waits = self.condition.carried or (self._rests and self.support.held and near == footing.down)
         searches = [] if waits else self._searches(state, footing, stands)
+        if self._loads.estimated:
+            feet = zip(footing.places, state.ground_height.tolist(), strict=True)
+            depths = [self.ground.at(place) + state.elevation - height for place, height in feet]
+            self._tipping.step(footing, depths, tilt, dt)
         missing.lost = contacts.tips(footing, missing.sinks(deeper))
+        if self._loads.estimated and missing.lost is None:
+            missing.lost = self._tipping.leg
         on = [on and stand for on, stand in zip(footing.down, stands, strict=True)]
         missing.step(searches, footing._replace(down=on), dt, footholds=footholds, deeper=deeper)
         # With the body higher and feet drawn in, legs are steeper beside an edge.

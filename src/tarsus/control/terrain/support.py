@@ -10,7 +10,7 @@ from typing import NamedTuple
 from tarsus.control.readings import RollPitch
 from tarsus.control.walk.state import GaitState
 
-__all__ = ["HALTING", "Footing", "Support", "along_gravity", "holds", "off_commanded"]
+__all__ = ["HALTING", "Footing", "Support", "Tipping", "along_gravity", "holds", "off_commanded"]
 
 # Rates at which the pace falls and rises [1/s].
 _FALL, _RISE = 10.0, 6.0
@@ -20,6 +20,9 @@ _PATIENCE = 0.3
 _GRACE = 0.15
 # Least angle by which the centre of mass is inside the support polygon, as seen from it [rad].
 _LEAST_ANGLE = 0.02
+# How far a body sinks at a foot that gives way, at least [m], within which time [s]; how far below the expected ground
+# such a foot is [m].
+_SINKS, _FOLLOWED, _LOW = 0.025, 0.6, 0.008
 HALTING = 0.5
 """Below this pace the robot waits for support."""
 
@@ -85,6 +88,54 @@ def off_commanded(attitude: RollPitch, state: GaitState) -> RollPitch:
     roll, pitch, yaw = state.moved_posture[3:6].tolist()
     off = complex(attitude[0] - roll, attitude[1] - pitch) * cmath.exp(1j * yaw)
     return off.real, off.imag
+
+
+class Tipping:
+    """Finds the foot at which a robot tips whose contacts are estimated.
+
+    A leg that rests on an edge with its shin bears load like one whose foot stands. The body sinks there, as fast as no
+    attitude is followed, and as far as a foot that stands does not let it.
+
+    Parameters
+    ----------
+    scale : float
+        By how much lengths are smaller than given, on short legs, 0 to 1.
+
+    Attributes
+    ----------
+    leg : int or None
+        The leg.
+    """
+
+    def __init__(self, scale: float) -> None:
+        self.leg: int | None = None
+        self._scale = scale
+        self._before: RollPitch | None = None
+
+    def step(self, footing: Footing, depths: Sequence[float], tilt: RollPitch | None, dt: float) -> None:
+        """Take in the tilt.
+
+        Parameters
+        ----------
+        footing, depths : Footing, sequence of float
+            The feet that should stand; how far below the expected ground they are [m].
+        tilt, dt : (roll, pitch) or None, float
+            By how much the body is tilted more than commanded, None where nothing is estimated [rad]; time since the
+            last call [s].
+        """
+        if tilt is None:
+            self.leg = self._before = None
+            return
+        share, (roll, pitch) = min(dt / _FOLLOWED, 1.0) * (self.leg is None), self._before or tilt
+        self._before = roll, pitch = roll + share * (tilt[0] - roll), pitch + share * (tilt[1] - pitch)
+        turn = complex(tilt[1] - pitch, roll - tilt[0])
+        sunk = [(place * turn.conjugate()).real for place in footing.places]
+        low = [leg for leg, on in enumerate(footing.down) if on and depths[leg] > self._scale * _LOW]
+        if self.leg is not None:
+            self.leg = self.leg if sunk[self.leg] > self._scale * _SINKS / 2 else None
+        elif low:
+            deepest = max(low, key=sunk.__getitem__)
+            self.leg = deepest if sunk[deepest] > self._scale * _SINKS else None
 
 
 class Support:
