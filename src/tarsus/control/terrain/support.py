@@ -93,8 +93,8 @@ def off_commanded(attitude: RollPitch, state: GaitState) -> RollPitch:
 class Tipping:
     """Finds the foot at which a robot tips whose contacts are estimated.
 
-    A leg that rests on an edge with its shin bears load like one whose foot stands. The body sinks there, as fast as no
-    attitude is followed, and as far as a foot that stands does not let it.
+    A leg that rests on an edge with its shin bears load like one whose foot stands. The body sinks there: faster than
+    slopes tilt it, and farther than at a foot that stands.
 
     Parameters
     ----------
