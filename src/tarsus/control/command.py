@@ -124,10 +124,8 @@ def finite_numbers(name: str, values: Sequence[float], axes: Sequence[str], *, m
 
     Parameters
     ----------
-    name, values : str, sequence of float
-        Name of the values, for the message; the numbers.
-    axes : sequence of str
-        Names of the axes.
+    name, values, axes : str, sequence of float, sequence of str
+        Name of the values, for the message; the numbers; names of the axes.
     most : float
         Greatest absolute value: no length of a robot [m] and no cycle time [s] is greater than 1000, and the squares
         of greater values may overflow.

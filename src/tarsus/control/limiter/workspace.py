@@ -85,10 +85,8 @@ def top_speed(transitions: TransitionExecutor, direction: Sequence[float]) -> fl
 
     Parameters
     ----------
-    transitions : TransitionExecutor
-        The stance.
-    direction : (vx, vy, wz)
-        The twist [m/s, m/s, rad/s].
+    transitions, direction : TransitionExecutor, (vx, vy, wz)
+        The stance; the twist [m/s, m/s, rad/s].
 
     Raises
     ------

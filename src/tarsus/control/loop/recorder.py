@@ -103,10 +103,8 @@ class Recorder:
 
         Parameters
         ----------
-        time, output : float, ControlOutput
-            Its end [s]; what the controller gave.
-        readings : SensorReadings
-            What the plant measured before it.
+        time, output, readings : float, ControlOutput, SensorReadings
+            Its end [s]; what the controller gave; what the plant measured before it.
         """
         before = self._outputs[-1]
         self._measured.append(readings.joint_angles)

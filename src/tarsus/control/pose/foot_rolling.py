@@ -108,10 +108,8 @@ class FootRolling:
         standing : sequence of float
             The height in that frame at which each foot stands [m]: how far a foot has rolled does not depend on how
             high it is lifted, so that it leaves the ground and lands as it stands.
-        rotation : three rows
-            Rotation of the body in that frame.
-        position : (x, y, z)
-            Position of the body's origin in that frame [m].
+        rotation, position : three rows, (x, y, z)
+            Rotation of the body in that frame; position of the body's origin in that frame [m].
         """
         legs = zip(feet, self.balls or (), self._legs_over_ground(feet, standing, rotation, position), strict=True)
         found = []

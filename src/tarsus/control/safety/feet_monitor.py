@@ -26,10 +26,8 @@ class FeetMonitor:
 
     Parameters
     ----------
-    robot : Robot
-        A single robot.
-    bounds : GuardBounds
-        The bounds.
+    robot, bounds : Robot, GuardBounds
+        A single robot; the bounds.
     """
 
     def __init__(self, robot: Robot, bounds: GuardBounds) -> None:

@@ -22,10 +22,8 @@ def project(points: list[Point], origin: Point, up: Point) -> tuple[list[float],
 
     Parameters
     ----------
-    points, origin : list of Point, Point
-        The points [m]; the origin [m].
-    up : Point
-        Unit vector of the upward direction.
+    points, origin, up : list of Point, Point, Point
+        The points [m]; the origin [m]; unit vector of the upward direction.
     """
     ux, uy, uz = up
     # A horizontal axis: the projection of y, or of x where y is nearly vertical.

@@ -104,10 +104,8 @@ class FootLoads:
             The readings.
         angles : array, shape (legs, 3)
             Joint angles [rad].
-        state, dt : GaitState, float
-            The gait state; length of the tick [s].
-        out : sequence of int
-            Legs that are taken out of the gait: they bear no load.
+        state, dt, out : GaitState, float, sequence of int
+            The gait state; length of the tick [s]; legs that are taken out of the gait: they bear no load.
         """
         if self._filter is None:
             return None

@@ -266,10 +266,8 @@ def body_contacts(robot: Robot, body: Pose) -> Float[np.ndarray, "n 3"]:
 
     Parameters
     ----------
-    robot : Robot
-        A single robot.
-    body : Pose
-        Pose of B in G.
+    robot, body : Robot, Pose
+        A single robot; pose of B in G.
 
     Returns
     -------

@@ -101,10 +101,8 @@ class FeltGround:
         ----------
         readings : SensorReadings or None
             The readings.
-        dt, state : float, GaitState
-            Time since the last tick [s]; the gait state.
-        timing : StepTiming
-            The gait and its frequency.
+        dt, state, timing : float, GaitState, StepTiming
+            Time since the last tick [s]; the gait state; the gait and its frequency.
         angles : array, shape (legs, 3)
             Joint angles [rad].
         """

@@ -58,10 +58,8 @@ def limited(
     ----------
     walk, tick : WalkComponents, TickState
         The components; the state.
-    command, dt : Command, float
-        What is commanded; length of the tick [s].
-    limiters : sequence of TwistLimiter
-        The limiters in their order.
+    command, dt, limiters : Command, float, sequence of TwistLimiter
+        What is commanded; length of the tick [s]; the limiters in their order.
     """
     transitions, standing = walk.transitions, tick.standing
     state = transitions.timing.with_first_lift(tick.gait, 0) if standing else tick.gait

@@ -37,10 +37,8 @@ def excluded_legs(command: Command, before: tuple[int, ...], legs: int) -> tuple
 
     Parameters
     ----------
-    command, before : Command, tuple of int
-        The command; the legs taken out so far.
-    legs : int
-        Number of legs.
+    command, before, legs : Command, tuple of int, int
+        The command; the legs taken out so far; number of legs.
 
     Raises
     ------
