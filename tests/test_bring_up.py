@@ -14,8 +14,17 @@ import tarsus
 from sample_commands import run
 from tarsus.cli import main
 from tarsus.cli.bring_up import _Terminal
-from tarsus.hardware import Calibration, ManualClock, MemoryTransport, bus_over, emulate, new_calibration
+from tarsus.hardware import (
+    Calibration,
+    ManualClock,
+    MemoryTransport,
+    bus_over,
+    emulate,
+    emulated_bus,
+    new_calibration,
+)
 from tarsus.hardware.bringup import trial, wizard
+from tarsus.hardware.bringup.bench import Bench
 from tarsus.hardware.bringup.dialogue import Left, Topic
 from tarsus.hardware.bringup.reference_pose import reference_angles
 from tarsus.hardware.bringup.wizard import BringUp
@@ -246,6 +255,40 @@ class Answers:
         if not self.answers:
             raise Left
         return self.answers.pop(0)
+
+
+class Watched:
+    """A clock that notes where a servo is as time passes."""
+
+    def __init__(self, clock, servo):
+        self.now, self._clock, self._servo, self.seen = clock.now, clock, servo, [servo.position]
+
+    def sleep(self, seconds):
+        self._clock.sleep(seconds)
+        self.seen.append(self._servo.position)
+
+
+def wiggled(start, *, limits=None):
+    """The sign of the first motion of a servo that starts there, as told and as seen, and the fastest step [ticks]."""
+    calibration = new_calibration(tarsus.load_robot("strider"), "strider", kind="feetech-sts", port="emulated")
+    known = calibration if limits is None else calibration.with_joint(0, 0, number=1, direction=1, limits=limits)
+    clock = ManualClock()
+    bus, servos = emulated_bus("feetech-sts", range(1, 19), clock=clock)
+    servos.servos[7].place(start)
+    watched = Watched(clock, servos.servos[7])
+    sign = Bench(bus, known, watched, blank=calibration).wiggle(7)
+    way = np.array(watched.seen) - start
+    first = way[np.abs(way) > 20][0]
+    assert abs(way[-1]) < 20
+    return sign, np.sign(first), np.abs(np.diff(watched.seen)).max()
+
+
+@pytest.mark.parametrize("start", [2048, 3570, 4080, 520, 20])
+@pytest.mark.parametrize("limits", [None, (1800.0, 2300.0)])
+def test_a_servo_moves_a_little_wherever_it_is_and_whatever_limits_another_has(start, limits):
+    told, seen, step = wiggled(start, limits=limits)
+    assert told == seen
+    assert step < 30
 
 
 def test_the_port_is_found_and_missing_servos_are_named(tmp_path):

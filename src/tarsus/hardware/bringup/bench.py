@@ -24,21 +24,24 @@ class Bench:
     ----------
     bus : Bus
         The bus.
-    calibration : Calibration
-        The calibration as far as it is known: scales and limits.
+    calibration, blank : Calibration
+        The calibration as far as it is known; the one in which nothing is: its limits are those of the servos.
     clock : Clock
         The clock.
     """
 
-    def __init__(self, bus: Bus, calibration: Calibration, clock: Clock) -> None:
+    def __init__(self, bus: Bus, calibration: Calibration, clock: Clock, *, blank: Calibration) -> None:
         self.bus, self._clock = bus, clock
         joint = calibration.joints[0][0]
-        if joint.scale is None or joint.limits is None:
+        limits = blank.joints[0][0].limits or joint.limits
+        if joint.scale is None or limits is None:
             raise NoAnswerError(
                 bus.name, bus.port, expected="scale and limits of the servos", received="none", remedy="Add them."
             )
-        self._scale, self._limits = joint.scale, joint.limits
+        self._scale, self._limits = joint.scale, limits
+        # Where each servo was told to go, and its range: one that is beyond the limits is not sent there at once.
         self._goals: dict[int, float] = {}
+        self._ranges: dict[int, tuple[float, float]] = {}
 
     @property
     def measures(self) -> bool:
@@ -93,6 +96,7 @@ class Bench:
             Id or channel.
         """
         start = self.position(number)
+        self._ranges[number] = min(start, self._limits[0]), max(start, self._limits[1])
         self.bus.set_torque_limit((number,), _TORQUE)
         self._write(number, start)
         self.bus.set_torque((number,), True)
@@ -110,7 +114,8 @@ class Bench:
         each : callable, optional
             Called in every tick.
         """
-        goal = min(max(goal, self._limits[0]), self._limits[1])
+        low, high = self._ranges.get(number, self._limits)
+        goal = min(max(goal, low), high)
         at = self._goals[number]
         step = _SPEED * self._scale * _TICK
         while abs(goal - at) > 0.5:
@@ -120,8 +125,10 @@ class Bench:
             if each is not None:
                 each()
 
-    def wiggle(self, number: int) -> None:
-        """Move a servo by 8 deg to a greater command, and back, then release it.
+    def wiggle(self, number: int) -> int:
+        """Move a servo by 8 deg and back, then release it; return the sign of the first motion.
+
+        It is that to a greater command, but at the end of the servo's travel.
 
         Parameters
         ----------
@@ -130,17 +137,13 @@ class Bench:
         """
         self.hold(number)
         start = self._goals[number]
-        room = self._limits[1] - start
-        way = min(_WIGGLE * self._scale, max(room, 0.0))
-        if way < _WIGGLE * self._scale / 2:
-            # At the end of its travel it comes back first, so that what is seen is a greater command.
-            self.move(number, start - _WIGGLE * self._scale)
-            way = _WIGGLE * self._scale
-        begin = self._goals[number]
-        self.move(number, begin + way)
+        way = _WIGGLE * self._scale
+        sign = 1 if self._limits[1] - start > way / 2 else -1
+        self.move(number, start + sign * way)
         self._clock.sleep(0.3)
-        self.move(number, begin)
+        self.move(number, start)
         self.release((number,))
+        return sign
 
     def release(self, numbers: Sequence[int] | None) -> None:
         """Release servos, as far as the bus can.
@@ -164,6 +167,7 @@ class Bench:
             self.bus.close()
 
     def _write(self, number: int, command: float) -> None:
-        whole = round(min(max(command, self._limits[0]), self._limits[1]))
+        low, high = self._ranges.get(number, self._limits)
+        whole = round(min(max(command, low), high))
         self.bus.write_goals({number: float(whole)})
         self._goals[number] = command

@@ -120,7 +120,7 @@ class Connection:
         progress, ask = self._progress, self._progress.ask
         settings = progress.calibration.buses[0]
         if settings.port:
-            return Bench(self._open(settings), progress.calibration, self._clock)
+            return Bench(self._open(settings), progress.calibration, self._clock, blank=progress.blank)
         while True:
             for port in self._ports():
                 found = dataclasses.replace(settings, port=port)
@@ -131,7 +131,7 @@ class Connection:
                 if bus.capabilities.ping == "none" or bus.scan(_range(progress, bus)).values:
                     progress.keep(progress.calibration.replace(buses=(found, *progress.calibration.buses[1:])))
                     ask.say(f"servos answer on {port}")
-                    return Bench(bus, progress.calibration, self._clock)
+                    return Bench(bus, progress.calibration, self._clock, blank=progress.blank)
                 bus.close()
             names = ", ".join(self._ports()) or "none"
             ask.say(f"no servo answers; ports found: {names}. Check the USB cable and switch the servos on.")

@@ -36,7 +36,7 @@ def identify(progress: Progress, bench: Bench, *, number: int) -> None:
         return
     while True:
         ask.say(f"{key} {number} moves a little, and back.")
-        bench.wiggle(number)
+        sign = bench.wiggle(number)
         options = {**progress.leg_options, "a": "move again", "n": "none"}
         answer = ask.choose("Which leg moved?", options, topic=Topic(title=_TITLE))
         if answer == "n":
@@ -58,7 +58,7 @@ def identify(progress: Progress, bench: Bench, *, number: int) -> None:
         way = ask.choose("Which way did it go first?", options, topic=topic)
         if way == "b":
             continue
-        direction = positive if way == first[0] else -positive
+        direction = sign * (positive if way == first[0] else -positive)
         if progress.keep_joint(leg, j, number=number, direction=direction):
             return
 
