@@ -125,3 +125,28 @@ def test_malformed_requests_are_reported(scenario, options, wanted):
     code, document = run_json("drive", "--dry", scenario, *options)
     assert code == 2
     assert wanted in document["error"]
+
+
+def test_a_long_timeline_is_no_name_of_a_file():
+    timeline = "; ".join(f"at {time} s: body x {time % 3} mm" for time in range(25))
+    assert len(timeline) > 400
+    code, found = run_json("drive", "--dry", timeline)
+    assert (code, found["possible"]) == (0, True)
+
+
+def test_commands_of_a_robot_that_is_to_lie_are_not_met():
+    for command in ("walk 50 mm/s", "foot_target RF x 250 mm y -150 mm z 60 mm"):
+        code, found = run_json("drive", "--dry", f"at 0 s: walk 40 mm/s; at 1 s: sit; at 7 s: {command}")
+        assert code == 1
+        assert any("the robot is lying; it must stand" in each["text"] for each in found["unmet"])
+    # What was commanded before ends as it sits down, and goes on once it stands.
+    code, found = run_json("drive", "--dry", "at 0 s: walk 40 mm/s; at 2 s: sit; at 9 s: stand_up; at 18 s: stop")
+    assert (code, found["unmet"]) == (0, [])
+    assert found["walked_s"] > 5
+
+
+def test_what_is_not_met_is_told_once():
+    result = run("drive", "--dry", "at 0 s: walk 900 mm/s; at 2 s: stop")
+    assert result.exit_code == 1
+    assert "not met" in result.stdout
+    assert "limited" not in result.stdout

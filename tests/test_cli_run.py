@@ -113,9 +113,24 @@ def test_physics_runs_the_same_controller():
     assert (code, found["bus"], found["timing"]) == (0, "simulated", None)
 
 
+def test_settings_of_a_scenario_hold_on_servos_and_in_physics(tmp_path):
+    path = tmp_path / "s.toml"
+    path.write_text('start = "sitting"\nrate_hz = 50\nlevelling = "none"\ntimeline = "at 0.2 s: walk 50 mm/s"\n')
+    for bus in ("emulated", "simulated"):
+        code, found = run_json("run", "strider", "--bus", bus, "--scenario", path, "--duration", "0.5")
+        assert code == 1
+        assert any("the robot is lying" in text for text in found["problems"])
+        if found["timing"]:
+            assert found["timing"]["rate_hz"] == pytest.approx(50, rel=0.1)
+
+
 @pytest.mark.parametrize(
     ("options", "message"),
     [
+        (("--scenario", "at 0 s: ground RF 4 mm"), "only an ideal plant simulates what sensors measure"),
+        (("--bus", "simulated", "--scenario", "at 0 s: tilt roll 3 deg"), "only an ideal plant simulates"),
+        (("--bus", "simulated:feetech-sts"), "only emulated buses have a kind; give --bus simulated"),
+        (("--bus", "simulated", "--rate", "5"), "from 20 Hz, below which joints are slowed down"),
         (("--bus", "real"), "needs its calibration"),
         (("--bus", "usb"), "must be real, emulated"),
         (("--bus", "emulated:usb"), "no kind of bus is called 'usb'"),
@@ -126,7 +141,10 @@ def test_physics_runs_the_same_controller():
         (("--keys", "--gamepad"), "exclude each other"),
         (("--keys", "--scenario", "at 0 s: stop"), "--scenario and --keys exclude each other"),
         (("--bus", "simulated", "--keys"), "physics does not run in real time"),
-        (("--bus", "simulated", "--rate", "1e9"), "at most 500 Hz in physics"),
+        (
+            ("--bus", "simulated", "--rate", "1e9"),
+            "from 20 Hz, below which joints are slowed down, to 500 Hz in physics",
+        ),
         (("--duration", "-1"), "--duration is -1 s; it must be greater than 0"),
         (("--rate", "0"), "--rate is 0 Hz"),
         (("--rate", "5"), "from 20 Hz, below which joints are slowed down, to the 379 Hz that the wires carry"),

@@ -132,9 +132,11 @@ class Histories(RuleBasedStateMachine):
     def change(self, x, commit):
         self.history.change(at(x).model_copy(update={"picture": self.history.present.picture}), commit=commit)
         self.present = x
-        if commit and x != self.committed:
-            self.past.append(self.committed)
-            self.committed, self.future = x, []
+        if x != self.committed:
+            self.future = []
+            if commit:
+                self.past.append(self.committed)
+                self.committed = x
 
     @rule(time=st.floats(0, 5))
     def look(self, time):

@@ -139,9 +139,10 @@ def _table(summary: dict[str, Any]) -> Table:
     for joint, load in (summary["loads"] or {}).items():
         factor = "" if load["factor"] != load["factor"] else f", safety factor {load['factor']:.2f}"
         table.add_row(f"peak torque, {joint}", f"{load['peak_nm']:.3f} N m ({load['leg']}){factor}")
-    for unmet in summary["unmet"]:
-        table.add_row("not met", f"{unmet['from_s']:.2f} to {unmet['until_s']:.2f} s: {unmet['text']}")
-    for limit in (limit for limit in summary["limits"] if limit not in summary["unmet"]):
+    for each in summary["unmet"]:
+        table.add_row("not met", f"{each['from_s']:.2f} to {each['until_s']:.2f} s: {each['text']}")
+    unmet = [{name: value for name, value in each.items() if name != "kind"} for each in summary["unmet"]]
+    for limit in (limit for limit in summary["limits"] if limit not in unmet):
         table.add_row("limited", f"{limit['from_s']:.2f} to {limit['until_s']:.2f} s: {limit['text']}")
     number = sum(summary["interventions"].values())
     table.add_row("guard", f"{number} intervention{'s' * (number != 1)}" if summary["guard"] else "none")

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 import numpy as np
+from click.core import ParameterSource
 
 from tarsus.cli.output import Progress
 from tarsus.cli.planning import plan
@@ -129,6 +130,8 @@ def run_timeline(
     given = [name for name, value in options.items() if value is not None and name not in ("rate", "compensate")]
     if given:
         raise click.UsageError(f"--{given[0].replace('_', '-')} and --scenario exclude each other")
+    asked = click.get_current_context().get_parameter_source("rate") is ParameterSource.COMMANDLINE
+    commands = timeline_of(scenario, options["rate"] if asked else None)
     plant = SimulatedPlant(load_robot(robot), **settings)
     traced = TracedPlant(plant)
     progress("physics", 0.1)
@@ -137,7 +140,7 @@ def run_timeline(
     if options["compensate"]:
         executing = CompensatedPlant(traced, springs=_springs(plant.robot, settings["servos"]))
         assumed = (*assumed, what_is_compensated(SHARE))
-    recording = run_scenario(timeline_of(scenario, None), robot=plant.robot, plant=executing)
+    recording = run_scenario(commands, robot=plant.robot, plant=executing)
     trace = traced.trace
     standing = recording.longest_standing
     planned = None if standing is None else planned_torques(standing)

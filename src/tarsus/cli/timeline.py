@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
-from pathlib import Path
+import os
 
 from tarsus.errors import InputError
 from tarsus.scenario.file import load_scenario, scenario_from_text
@@ -30,6 +30,6 @@ def timeline_of(text: str, rate: float | None) -> Scenario:
     if not text.strip():
         raise InputError("the scenario is empty; give a TOML file, or commands such as 'at 0 s: walk 50 mm/s'")
     # A file name is not expected to begin with "at ".
-    is_timeline = text.lstrip().startswith("at ") and not Path(text).is_file()
+    is_timeline = text.lstrip().startswith("at ") and not os.path.isfile(text)
     found = scenario_from_text(text) if is_timeline else load_scenario(text)
     return found if rate is None else dataclasses.replace(found, rate=rate)

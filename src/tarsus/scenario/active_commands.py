@@ -89,6 +89,8 @@ class ScenarioCommands:
         # Legs out of the gait, each with a target or a velocity; None for one that is put back into it.
         self._feet: dict[int, FootTarget | FootVelocity | None] = {}
         self._state: RobotState | None = None
+        # Whether the twist, and which legs, were commanded while the robot is to lie: the controller says why not.
+        self._asks, self._asked = False, set[int]()
         self._command = Command()
 
     # The source of a run.
@@ -115,8 +117,9 @@ class ScenarioCommands:
             self._queue.popleft()
             changed = True
         if self._queue and type(self._queue[0]) in _STATES:
-            changed = changed or self._state is not _STATES[type(self._queue[0])]
-            self._state = _STATES[type(self._queue[0])]
+            state = _STATES[type(self._queue[0])]
+            if state is not self._state:
+                changed, self._state, self._asks, self._asked = True, state, False, set()
         if changed:
             self._command = self._merged()
         return self._command
@@ -146,6 +149,7 @@ class ScenarioCommands:
             self._queue.append(command)
         elif isinstance(command, Walk | Stop):
             self._twist = (command.vx, command.vy, command.turn) if isinstance(command, Walk) else _NO_TWIST
+            self._asks = not self._stands
         elif isinstance(command, MoveBody | Sway):
             axes = tuple(float(getattr(command, axis)) for axis in BODY_AXES)
             self._held["body" if isinstance(command, MoveBody) else "sway"] = axes
@@ -164,11 +168,17 @@ class ScenarioCommands:
             self._environment.set_force(leg, command.force)
         elif leg is not None:
             self._feet[leg] = command if isinstance(command, FootTarget | FootVelocity) else None
+            if not self._stands:
+                self._asked.add(leg)
+
+    @property
+    def _stands(self) -> bool:
+        return self._state in (None, RobotState.STANDING)
 
     def _merged(self) -> Command:
-        """Return what is commanded now; a robot that is to lie neither walks nor moves single feet."""
-        stands = self._state in (None, RobotState.STANDING)
-        feet = self._feet if stands else dict.fromkeys(self._feet)
+        """Return what is commanded now; what was commanded before the robot was to lie ends then."""
+        stands = self._stands
+        feet = {leg: foot if stands or leg in self._asked else None for leg, foot in self._feet.items()}
         velocities = {n: (f.vx, f.vy, f.vz) for n, f in feet.items() if isinstance(f, FootVelocity)}
         targets = {
             n: (f.x, f.y, f.z) if isinstance(f, FootTarget) else None
@@ -176,7 +186,7 @@ class ScenarioCommands:
             if not isinstance(f, FootVelocity)
         }
         return Command(
-            twist=self._twist if stands else _NO_TWIST,
+            twist=self._twist if stands or self._asks else _NO_TWIST,
             foot_targets=targets or None,
             foot_velocities=velocities or None,
             state=self._state,

@@ -19,7 +19,7 @@ from tarsus.scenario.drivable import require_drivable
 from tarsus.scenario.scenario import Scenario
 from tarsus.scenario.wording import command_text
 
-__all__ = ["run_scenario"]
+__all__ = ["run_scenario", "scenario_commands", "scenario_controller"]
 
 _STARTS = {"standing": RobotState.STANDING, "sitting": RobotState.LYING, "folded": RobotState.FOLDED}
 
@@ -53,8 +53,67 @@ def run_scenario(
         If the robot can't stand as the scenario starts.
     """
     chosen = _robot(scenario, robot, plant)
-    require_drivable(scenario, chosen)
+    controller = scenario_controller(scenario, chosen, guard=guard)
     plant = IdealPlant(chosen) if plant is None else plant
+    return run(
+        controller,
+        plant,
+        scenario_commands(scenario, plant),
+        rate=scenario.rate,
+        jitter=scenario.jitter,
+        seed=scenario.seed,
+        name=scenario.name,
+    )
+
+
+def scenario_controller(
+    scenario: Scenario, robot: Robot, *, start: RobotState | None = None, guard: bool = True
+) -> RobotController:
+    """Return a controller with the settings of a scenario.
+
+    Parameters
+    ----------
+    scenario, robot : Scenario, Robot
+        The scenario; a single robot.
+    start : RobotState, optional
+        How the robot is found; as the scenario starts where left out.
+    guard : bool
+        Whether a guard checks the angles.
+
+    Raises
+    ------
+    InputError
+        If a command names a gait that does not fit the robot, or a force is to be measured that nothing responds to.
+    UnknownNameError
+        If a command names a leg that the robot does not have.
+    """
+    require_drivable(scenario, robot)
+    levelling: Any = None if scenario.levelling == "none" else scenario.levelling or "level"
+    return RobotController(
+        robot,
+        Gait.named(scenario.gait or robot.gait.name, legs=robot.legs),
+        start=_STARTS[scenario.start] if start is None else start,
+        body_height=scenario.body_height,
+        swing_height=scenario.swing_height,
+        levelling=levelling,
+        admittance=scenario.admittance,
+        guard=guard,
+    )
+
+
+def scenario_commands(scenario: Scenario, plant: Plant) -> ScenarioCommands:
+    """Return the commands of a scenario for a plant.
+
+    Parameters
+    ----------
+    scenario, plant : Scenario, Plant
+        The scenario; what executes the joint angles.
+
+    Raises
+    ------
+    InputError
+        If the plant can't simulate what a command asks for.
+    """
     environment = getattr(plant, "environment", None)
     for command in scenario.commands:
         if environment is None and isinstance(command, Ground | Tilt | Force):
@@ -62,27 +121,7 @@ def run_scenario(
                 f"at {command.at:g} s: {command_text(command)}: only an ideal plant simulates what sensors measure; "
                 f"leave the command out for a {type(plant).__name__}"
             )
-    levelling: Any = None if scenario.levelling == "none" else scenario.levelling or "level"
-    controller = RobotController(
-        chosen,
-        Gait.named(scenario.gait or chosen.gait.name, legs=chosen.legs),
-        start=_STARTS[scenario.start],
-        body_height=scenario.body_height,
-        swing_height=scenario.swing_height,
-        levelling=levelling,
-        admittance=scenario.admittance,
-        guard=guard,
-    )
-    source = ScenarioCommands(scenario, chosen, environment)
-    return run(
-        controller,
-        plant,
-        source,
-        rate=scenario.rate,
-        jitter=scenario.jitter,
-        seed=scenario.seed,
-        name=scenario.name,
-    )
+    return ScenarioCommands(scenario, plant.robot, environment)
 
 
 def _robot(scenario: Scenario, robot: Robot | str | None, plant: Plant | None) -> Robot:

@@ -48,10 +48,11 @@ class History:
             Whether undo returns to this state; false during a continuous change.
         """
         self.present = state
-        if commit and state != self._committed:
-            self._past.append(self._committed)
+        if state != self._committed:
             self._future.clear()
-            self._committed = state
+            if commit:
+                self._past.append(self._committed)
+                self._committed = state
 
     def look(self, view: View, picture: Picture) -> None:
         """Change the view or the camera, which undo does not revert.

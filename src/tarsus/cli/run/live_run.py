@@ -22,7 +22,6 @@ from tarsus.control.plant import Plant
 from tarsus.control.robot_controller import RobotController
 from tarsus.control.states.robot_state import RobotState
 from tarsus.errors import InputError, ServoFaultError
-from tarsus.gait.gait import Gait
 from tarsus.hardware.calibration.blank import nominal_calibration
 from tarsus.hardware.calibration.bus_commands import bus_commands, usual_bus
 from tarsus.hardware.calibration.calibration import Calibration
@@ -37,14 +36,14 @@ from tarsus.hardware.plant.tick_record import TickRecord
 from tarsus.hardware.telemetry.log import TelemetryLog
 from tarsus.robot.file import load_robot
 from tarsus.robot.robot import Robot
-from tarsus.scenario.active_commands import ScenarioCommands
-from tarsus.scenario.drivable import require_drivable
+from tarsus.scenario.runner import scenario_commands, scenario_controller
 from tarsus.scenario.scenario import Scenario
 
 __all__ = ["perform"]
 
 _DEMO = "at 0 s: walk 60 mm/s; at 2 s: walk turn 20 deg/s; at 3 s: stop"
-_RATE, _FASTEST = 100.0, 500.0
+# Ticks per second in physics [1/s].
+_SLOWEST, _FASTEST = 20.0, 500.0
 # Greatest speeds for keys and gamepads [m/s, m/s, rad/s].
 _SPEEDS = (0.06, 0.05, 0.4)
 _REAL, _EMULATED, _SIMULATED = "real", "emulated", "simulated"
@@ -69,22 +68,17 @@ def perform(robot: str, options: dict[str, Any], *, out: Path | None, quiet: boo
     TarsusError
         If the run can't begin.
     """
-    where, _, kind = (options["bus"] or (_REAL if options["calibration"] else _EMULATED)).partition(":")
-    if where not in (_REAL, _EMULATED, _SIMULATED):
-        raise InputError(f"--bus {options['bus']}: it must be real, emulated, emulated:KIND or simulated")
-    if where != _REAL and options["port"] is not None:
-        raise InputError(f"--port is for real robots; with --bus {where} leave it out, or give --bus real")
-    if where == _SIMULATED and options["calibration"] is not None:
-        raise InputError("physics moves the joints without servo commands: leave --calibration out, or --bus simulated")
+    where, kind = _bus(options)
     chosen = load_robot(robot)
     if where == _SIMULATED:
         return _simulated(chosen, options, out=out)
     calibration = _calibration(robot, chosen, options, where, kind)
     calibration.require_complete()
-    start = options["start"] or ("lying" if where == _REAL else "standing")
+    start = options["start"] or ("lying" if where == _REAL else None)
     with as_interrupts(), contextlib.ExitStack() as stack:
         scenario = _scenario(options)
-        controller = _controller(calibration.limited_robot, scenario, RobotState(start))
+        found = None if start is None else RobotState(start)
+        controller = scenario_controller(scenario, calibration.limited_robot, start=found)
         buses = None
         if where == _EMULATED:
             emulated = stack.enter_context(EmulatedRobot(calibration, controller.output.angles))
@@ -107,14 +101,28 @@ def perform(robot: str, options: dict[str, Any], *, out: Path | None, quiet: boo
         if driven is not None:
             driven.plant = plant
         with plant:
-            rate = _rate(options["rate"], plant)
-            source = _source(controller, scenario, options, stack, line) if driven is None else driven
+            rate = _rate(options["rate"], plant, scenario.rate)
+            source = _source(plant, scenario, options, stack, line) if driven is None else driven
             if start == "lying":
                 source = Rising(source)
             outcome = _run(controller, plant, Supervised(source, plant), rate, options["duration"], line)
     if log is not None and log.problem:
         plant.notes.append(log.problem)
     return _summary(chosen, bus, plant, outcome, line, out, logged=log is not None and not log.problem)
+
+
+def _bus(options: dict[str, Any]) -> tuple[str, str]:
+    """Return where the robot is, and the kind of its emulated bus."""
+    where, _, kind = (options["bus"] or (_REAL if options["calibration"] else _EMULATED)).partition(":")
+    if where not in (_REAL, _EMULATED, _SIMULATED):
+        raise InputError(f"--bus {options['bus']}: it must be real, emulated, emulated:KIND or simulated")
+    if kind and where != _EMULATED:
+        raise InputError(f"--bus {options['bus']}: only emulated buses have a kind; give --bus {where}")
+    if where != _REAL and options["port"] is not None:
+        raise InputError(f"--port is for real robots; with --bus {where} leave it out, or give --bus real")
+    if where == _SIMULATED and options["calibration"] is not None:
+        raise InputError("physics moves the joints without servo commands: leave --calibration out, or --bus simulated")
+    return where, kind
 
 
 def _each_of(observers: Sequence[Callable[[TickRecord], None]]) -> Callable[[TickRecord], None]:
@@ -125,11 +133,19 @@ def _each_of(observers: Sequence[Callable[[TickRecord], None]]) -> Callable[[Tic
     return observe
 
 
-def _rate(asked: float | None, plant: ServoPlant) -> float:
-    """Return the ticks per second [1/s]: what was asked for, or what the wires carry with a reserve."""
+def _rate(asked: float | None, plant: ServoPlant, usual: float) -> float:
+    """Return the ticks per second [1/s]: those asked for, or the usual ones if the wires carry them with a reserve."""
     greatest, least = plant.greatest_rate, 1.0 / plant.settings.longest_tick
     if asked is None:
-        return min(_RATE, float(np.floor(plant.usual_rate)))
+        found = min(usual, float(np.floor(plant.usual_rate)))
+        if found >= least:
+            return found
+        asked = found
+    if greatest < least:
+        raise InputError(
+            f"the wires carry {greatest:.0f} ticks per second; walking takes {least:g}, below which joints are slowed "
+            "down: set a higher baud rate, or a shorter return delay"
+        )
     if not least <= asked <= greatest:
         raise InputError(
             f"--rate is {asked:g} Hz; it must be from {least:g} Hz, below which joints are slowed down, to the "
@@ -206,21 +222,8 @@ def _scenario(options: dict[str, Any]) -> Scenario:
     return timeline_of(options["scenario"] or _DEMO, None)
 
 
-def _controller(robot: Robot, scenario: Scenario, start: RobotState) -> RobotController:
-    require_drivable(scenario, robot)
-    levelling: Any = scenario.levelling or None
-    return RobotController(
-        robot,
-        Gait.named(scenario.gait or robot.gait.name, legs=robot.legs),
-        start=start,
-        body_height=scenario.body_height,
-        swing_height=scenario.swing_height,
-        levelling=levelling,
-    )
-
-
 def _source(
-    controller: RobotController,
+    plant: Plant,
     scenario: Scenario,
     options: dict[str, Any],
     stack: contextlib.ExitStack,
@@ -233,7 +236,7 @@ def _source(
     elif options["gamepad"]:
         device = stack.enter_context(Gamepad(options["gamepad"]))
     else:
-        return ScenarioCommands(scenario, controller.robot, None)
+        return scenario_commands(scenario, plant)
     return LiveCommands(device, speeds=_SPEEDS)
 
 
@@ -244,14 +247,17 @@ def _simulated(robot: Robot, options: dict[str, Any], *, out: Path | None) -> di
     if options["keys"] or options["gamepad"] or options["studio"]:
         raise InputError("physics does not run in real time: use --bus emulated with --keys, --gamepad or --studio")
     scenario = _scenario(options)
-    controller = _controller(robot, scenario, RobotState(options["start"] or "standing"))
-    source: CommandSource = ScenarioCommands(scenario, robot, None)
+    start = None if options["start"] is None else RobotState(options["start"])
+    controller, plant = scenario_controller(scenario, robot, start=start), SimulatedPlant(robot)
+    source: CommandSource = scenario_commands(scenario, plant)
     if options["start"] == "lying":
         source = Rising(source)
-    rate = options["rate"] or _RATE
-    if rate > _FASTEST:
-        raise InputError(f"--rate is {rate:g} Hz; it must be at most {_FASTEST:g} Hz in physics, whose steps are 2 ms")
-    plant = SimulatedPlant(robot)
+    rate = options["rate"] or scenario.rate
+    if not _SLOWEST <= rate <= _FASTEST:
+        raise InputError(
+            f"--rate is {rate:g} Hz; it must be from {_SLOWEST:g} Hz, below which joints are slowed down, to "
+            f"{_FASTEST:g} Hz in physics, whose steps are 2 ms"
+        )
     with StatusLine(quiet=True) as line:
         outcome = _run(controller, plant, source, rate, options["duration"], line)
     return _summary(robot, "simulated", None, outcome, line, out)

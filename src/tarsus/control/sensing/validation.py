@@ -20,8 +20,8 @@ from tarsus.robot.robot import Robot
 
 __all__ = ["ReadingsValidator", "rejections"]
 
-# Greatest age of a reading [s].
-_MOST_AGE = 0.1
+# Greatest age of a reading [s], or in ticks where these are long.
+_MOST_AGE, _MOST_TICKS = 0.1, 3.0
 # Greatest force on one foot, in weights of the robot, and greatest torque, in stall torques of the joint's servo.
 _MOST_WEIGHTS, _MOST_STALLS = 4.0, 1.5
 # Bounds where the robot's masses or servos are unknown, above those of any robot this is made for.
@@ -81,7 +81,8 @@ class ReadingsValidator:
             channel.elapse(dt)
         if readings is None:
             return _NO_READINGS
-        problem, ages = _channel_ages(readings)
+        most = max(_MOST_AGE, _MOST_TICKS * dt)
+        problem, ages = _channel_ages(readings, most)
         if problem:
             for channel in self._channels:
                 channel.reset()
@@ -89,7 +90,7 @@ class ReadingsValidator:
         rejected: list[str] = []
         values = _VALUES(readings)
         if ages:
-            values = self._fresh(values, ages, rejected)
+            values = self._fresh(values, ages, most, rejected)
         found = [
             value if value is None else channel.read(value, rejected)
             for channel, value in zip(self._channels, values, strict=True)
@@ -103,11 +104,13 @@ class ReadingsValidator:
         contact_age, ground_age = (max(0.0, as_number(ages.get(name, 0.0))) for name in (tells, "ground"))
         return ValidReadings._make((*found, ground_age, contact_age, tuple(rejected)))
 
-    def _fresh(self, values: tuple[Any, ...], ages: dict[str, Any], rejected: list[str]) -> tuple[Any, ...]:
+    def _fresh(
+        self, values: tuple[Any, ...], ages: dict[str, Any], most: float, rejected: list[str]
+    ) -> tuple[Any, ...]:
         """Return the readings, None for those that are too old."""
         fresh = list(values)
         for index, (name, value) in enumerate(zip(CHANNELS, values, strict=True)):
-            if value is not None and (stale := _stale(name, ages.get(name, 0.0))):
+            if value is not None and (stale := _stale(name, ages.get(name, 0.0), most)):
                 rejected.append(stale)
                 self._channels[index].reset()
                 fresh[index] = None
@@ -138,13 +141,13 @@ class _GroundChannel:
         return None
 
 
-def _channel_ages(readings: SensorReadings) -> tuple[str, dict[str, Any]]:
+def _channel_ages(readings: SensorReadings, most: float) -> tuple[str, dict[str, Any]]:
     """Return what is wrong with all readings together, "" if nothing is, and the ages of single channels."""
     if type(readings) is not SensorReadings:
         return "readings: not of class SensorReadings", {}
     age: Any = readings.age
     if type(age) is float or not hasattr(type(age), "keys"):
-        return _stale("readings", age), {}
+        return _stale("readings", age, most), {}
     try:
         ages = {name: age[name] for name in CHANNELS if name in age}
         unknown = len(age) != len(ages)
@@ -153,12 +156,12 @@ def _channel_ages(readings: SensorReadings) -> tuple[str, dict[str, Any]]:
     return ("readings: age of a channel that does not exist" if unknown else ""), ages
 
 
-def _stale(name: str, age: Any) -> str:
+def _stale(name: str, age: Any, most: float) -> str:
     """Return what is wrong with an age, "" if it is at most the greatest."""
     seconds = as_number(age)
-    if 0.0 <= seconds <= _MOST_AGE:
+    if 0.0 <= seconds <= most:
         return ""
-    return f"{name}: older than {1e3 * _MOST_AGE:g} ms" if seconds > 0 else f"{name}: {_BAD_AGE}"
+    return f"{name}: older than {1e3 * most:.3g} ms" if seconds > 0 else f"{name}: {_BAD_AGE}"
 
 
 def _forces_channel(robot: Robot) -> VectorChannel:

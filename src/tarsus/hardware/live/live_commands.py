@@ -91,7 +91,7 @@ class LiveCommands:
                 changes["state"] = each.state
             if each.gait:
                 changes["gait"] = each.gait
-            if each.body_height:
+            if each.body_height and output.state.upright:
                 changes["body_height"] = float(output.body.position[2]) + each.body_height
         if any(self._twist) and (self._quit or now - self._heard > self._deadman):
             self._twist = _NO_TWIST
