@@ -188,6 +188,8 @@ def test_a_raised_leg_changes_nothing_and_a_long_one_tips_the_robot():
     rest = resting_pose(robot, angles)
     np.testing.assert_allclose(rest.body.rotation, np.eye(3), atol=1e-15)
     assert rest.describe().startswith("stands on 5 feet: LF, LR, RR, RM, RF; ")
+    names = ("front left", "middle left", "mid left", "rear right", "middle right", "front right")
+    assert ": front left, mid left, rear right, " in resting_pose(robot.replace(leg_names=names), angles).describe()
     angles[1, 1] -= 0.3
     rest = resting_pose(robot, angles)
     assert rest.contacts[1]

@@ -170,6 +170,9 @@ def test_controller_and_plant_are_of_one_robot():
     turned = STRIDER.replace(mount_yaw=STRIDER.mount_yaw + np.array([0.0, 2 * math.pi + 0.2, 0, 0, 0, 0]))
     with pytest.raises(InputError, match=r"links or mount of middle left differ by \d+\.?\d* mm; at most"):
         run(RobotController(STRIDER), IdealPlant(turned), [])
+    offset = STRIDER.replace(femur_axis_offset=np.tile([0.0, 0.08], (6, 1)))
+    with pytest.raises(InputError, match="links or mount of front left differ by 80 mm"):
+        run(RobotController(STRIDER), IdealPlant(offset), [])
 
 
 def test_a_plant_with_errors_of_measures_is_the_same_robot():

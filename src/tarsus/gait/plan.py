@@ -32,6 +32,8 @@ __all__ = ["plan_walk"]
 
 _MOST_SAMPLES = 2_000_000
 _SHORTEST_PATH = 1e-9
+# Of the number of samples in a swing.
+_ROUNDING = 1e-6
 _LONGEST_STROKE = 1e3
 # Time in which a body shift begins and ends [cycles].
 _LEAD = 0.5
@@ -89,7 +91,7 @@ def plan_walk(  # noqa: PLR0913 - the options of a walk, all of them with defaul
     foot_distance : float, optional
         Least distance between two feet [m]. Default: two foot radii and 10 mm.
     rate : float
-        Samples per second [1/s]; at least one per swing.
+        Samples per second [1/s]; more than one per swing.
     strict : bool
         Whether to raise an error where the stroke exceeds `max_stroke` or feet come too close to each other; else
         `Motion.problems` lists it.
@@ -145,10 +147,10 @@ def plan_walk(  # noqa: PLR0913 - the options of a walk, all of them with defaul
 def _steps(gait: Gait, *, travel: float, stroke: float, cycle_time: float, rate: float) -> Steps:
     """Return the steps of a walk; refuse too many samples, and a rate with swings between two samples."""
     swing_time = cycle_time * (1 - gait.duty_factor)
-    if swing_time * rate < 1:
+    if swing_time * rate <= 1 + _ROUNDING:
         raise InputError(
             f"rate is {rate:g} Hz, and a swing takes {swing_time:g} s: it would fall between two samples; "
-            f"rate must be at least {1 / swing_time if swing_time else math.inf:.4g} Hz"
+            f"rate must be more than {1 / swing_time if swing_time else math.inf:.4g} Hz"
         )
     strokes = travel / stroke
     cycles = strokes * gait.duty_factor + 2

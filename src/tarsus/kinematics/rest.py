@@ -84,7 +84,7 @@ class RestingPose:
         return f"{contacts}; stability margin {1000 * float(self.margin):.1f} mm{massless}"
 
     def _describe_contacts(self, down: Bool[Array, "legs 4"]) -> str:
-        names = [_short(name) for name in self.robot.leg_names]
+        names = self.robot.leg_codes
         parts = []
         for point, part in ((3, "foot"), (2, "knee"), (1, "femur axis")):
             legs = [name for name, touches in zip(names, down[:, point], strict=True) if touches]
@@ -106,12 +106,6 @@ class RestingPose:
 
 _PLURALS = {"foot": "feet", "knee": "knees", "femur axis": "femur axes"}
 _FACES = (("its front", "its rear"), ("its left side", "its right side"), ("its back", "its belly"))
-
-
-def _short(name: str) -> str:
-    """``"front left"`` becomes ``"LF"``; a name that is not of two words stays."""
-    words = name.split()
-    return (words[1][0] + words[0][0]).upper() if len(words) == 2 else name
 
 
 def resting_pose(robot: Robot, angles: Float[Array, "*#batch legs 3"], *, max_rolls: int = 64) -> RestingPose:

@@ -13,6 +13,8 @@ import numpy as np
 from tarsus.errors import InputError, TarsusError
 from tarsus.gait.gait import GAITS, Gait
 from tarsus.gait.motion import Motion
+from tarsus.load.compliant.decisive_loads import decisive_loads
+from tarsus.load.compliant.for_loads import compliant_or_missing
 from tarsus.load.loads import JointLoads, joint_loads
 from tarsus.load.verdict import CONTINUOUS_FRACTION, SAFETY_FACTOR
 from tarsus.representation import represented
@@ -59,6 +61,8 @@ def walk_changes(
     together. Of several body heights or distances, the least change with the required factor is returned, else that
     with the largest factor. Walks that are not possible are left out.
 
+    Factors are those by which servos are judged: of vertical forces and of compliant statics the lower.
+
     Parameters
     ----------
     loads : JointLoads
@@ -73,7 +77,7 @@ def walk_changes(
     tuple of WalkChange
         Empty if a servo is unknown, or nothing helps.
     """
-    least = float(np.min(loads.factor))
+    least = float(np.min(_decisive(loads).factor))
     if not np.isfinite(least):
         return ()
     tried = _Tried(loads, plan, safety_factor, least * (1 + _NEGLIGIBLE))
@@ -136,12 +140,17 @@ class _Tried:
         except TarsusError:
             return None
         base = self.loads
-        loads = joint_loads(base.robot, motion, payload=base.payload, **base.conditions)
+        loads = _decisive(joint_loads(base.robot, motion, payload=base.payload, **base.conditions))
         factor = float(np.min(loads.factor))
         if not (motion.ok and loads.balanced and factor > self.least):
             return None
         thermal = float(np.max(loads.rms / (CONTINUOUS_FRACTION * loads.stall_torque)))
         return WalkChange(text=text, options=MappingProxyType(options), factor=factor, thermal_ratio=thermal)
+
+
+def _decisive(loads: JointLoads) -> JointLoads:
+    """Return the loads that servos are judged by, compliant statics among them where these are known."""
+    return decisive_loads(loads, compliant_or_missing(loads)[0])
 
 
 def _gaits(legs: int) -> Iterator[Gait]:

@@ -51,6 +51,7 @@ def require_same_robot(plant: Robot, commanded: Robot, what: str) -> None:
         )
 
 
-def _measures(robot: Robot) -> Float[np.ndarray, "6 legs"]:
-    """Return the positions of the mounts and the lengths of the links [m]."""
-    return np.array([*robot.mount_position.T, robot.coxa, robot.femur, robot.tibia])
+def _measures(robot: Robot) -> Float[np.ndarray, "8 legs"]:
+    """Return the positions of the mounts, the offsets of the femur axes and the lengths of the links [m]."""
+    offsets = robot.femur_axis_offset.T
+    return np.array([*robot.mount_position.T, *offsets, robot.coxa, robot.femur, robot.tibia])
