@@ -448,6 +448,14 @@ def test_servos_are_sized_by_the_higher_loads(strider_walk):
     decisive = decisive_loads(vertical, pressed)
     np.testing.assert_allclose(decisive.peak, np.maximum(vertical.peak, pressed.loads.peak))
     assert decisive_loads(vertical, None) is vertical
+    np.testing.assert_allclose(decisive.rms, np.maximum(vertical.rms, pressed.loads.rms))
+    # When and why a joint has its peak is of the case that has it.
+    higher = pressed.loads.peak > vertical.peak
+    assert 0 < np.count_nonzero(higher) < higher.size
+    for leg, joint in np.ndindex(higher.shape):
+        case = pressed.loads if higher[leg, joint] else vertical
+        assert decisive.cause(leg, joint) == case.cause(leg, joint)
+        assert decisive.peak_sample[leg, joint] == case.peak_sample[leg, joint]
     alone, both = (size_servos(STRIDER, vertical, compliant=found) for found in (None, pressed))
     coxae = [[v for v in found.verdicts if v.joint == "coxa"] for found in (alone, both)]
     assert all(b.factor < 0.5 * a.factor for a, b in zip(*coxae, strict=True))

@@ -45,7 +45,9 @@ def loads_summary(
     decisive = decisive_loads(loads, compliant)
     verdicts = joint_verdicts(decisive)
     pressed = [None] * len(verdicts) if compliant is None else list(joint_verdicts(compliant.loads))
-    for row, verdict, other in zip(document["joints"], verdicts, pressed, strict=True):
+    times = decisive.motion.time[decisive.peak_sample].ravel().tolist()
+    for row, verdict, other, time in zip(document["joints"], verdicts, pressed, times, strict=True):
+        row["peak_cause"], row["peak_at_s"] = verdict.cause, time
         row["compliant_peak_nm"] = None if other is None else other.peak
         row["compliant_rms_nm"] = None if other is None else other.rms
         row["factor"], row["utilisation"] = _number(verdict.factor), _number(verdict.utilisation)
