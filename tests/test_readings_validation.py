@@ -200,6 +200,11 @@ def test_old_readings_are_rejected_and_must_settle():
     assert validated(validator, **PLAUSIBLE) == validated(**PLAUSIBLE)
 
 
+def test_readings_of_a_slow_wire_may_be_four_ticks_old():
+    assert validated(dt=0.048, **PLAUSIBLE, age=0.19).rejected == ()
+    assert validated(dt=0.048, **PLAUSIBLE, age=0.2).rejected == ("readings: older than 192 ms",)
+
+
 @pytest.mark.parametrize("channel", FINITE)
 def test_joint_channels_pass_where_they_are_finite(channel):
     reading = np.arange(18.0).reshape(6, 3) - 5.0

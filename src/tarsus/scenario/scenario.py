@@ -48,8 +48,9 @@ class Scenario:
         The gait it starts with; the robot's own where empty.
     body_height, swing_height : float, optional
         Of the stance it starts in or gets up to [m]; the robot's own where left out.
-    levelling : {"", "level", "follow"}
-        On ground that it feels is not level: nothing, or the body stays level, or follows the slope.
+    levelling : {"", "level", "between", "follow", "none"}
+        On ground that it feels is not level, the body stays level, as where left out, follows the slope, is between
+        the two, or is left to it.
     admittance : Admittance, optional
         How feet give way to the forces on them; left out, they don't.
 

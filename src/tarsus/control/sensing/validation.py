@@ -21,7 +21,7 @@ from tarsus.robot.robot import Robot
 __all__ = ["ReadingsValidator", "rejections"]
 
 # Greatest age of a reading [s], or in ticks where these are long.
-_MOST_AGE, _MOST_TICKS = 0.1, 3.0
+_MOST_AGE, _MOST_TICKS = 0.1, 4.0
 # Greatest force on one foot, in weights of the robot, and greatest torque, in stall torques of the joint's servo.
 _MOST_WEIGHTS, _MOST_STALLS = 4.0, 1.5
 # Bounds where the robot's masses or servos are unknown, above those of any robot this is made for.
