@@ -547,3 +547,16 @@ def test_any_kind_of_input_is_accepted_not_modified_and_not_kept(batch, kind):
         assert not np.shares_memory(array, feet)
     with pytest.raises(ValueError, match="read-only"):
         found.feet[...] = 0
+
+
+@pytest.mark.parametrize("library", [np, jnp])
+@pytest.mark.parametrize("knee", ["up", "down"])
+def test_a_leg_whose_limits_allow_one_knee_branch_tells_why_that_one_fails(library, knee):
+    limits = np.tile(np.deg2rad([[-60, 60], [-80, 30], [10, 160]]), (6, 1, 1))
+    robot = plain_hexapod(limits=limits)
+    # 15 deg below the lower limit of the femur.
+    feet = forward_kinematics(robot, np.tile(np.deg2rad([0.0, -95.0, 90.0]), (6, 1)))[:, 3]
+    found = inverse_kinematics(robot, library.asarray(feet), knee=knee)
+    assert set(np.asarray(found.reach).tolist()) == {int(Reach.FEMUR_LIMIT)}
+    if library is np:
+        assert "the femur angle would be -95.0 deg, 15.0 deg below its lower limit of -80.0 deg" in found.explain()

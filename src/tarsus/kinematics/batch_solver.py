@@ -17,7 +17,7 @@ from tarsus.arrays import (
 )
 from tarsus.blocks import BLOCK, SMALL, batch_blocks, block_shape, columns
 from tarsus.kinematics.ground import PoseComponents, certainly_above_ground, mark_below_ground, points_in_body
-from tarsus.kinematics.nearest import nearest_angles
+from tarsus.kinematics.nearest import nearest_angles, tibia_bend
 from tarsus.kinematics.pose import Pose
 from tarsus.kinematics.reach import LENGTH_TOLERANCE, Reach, all_within, reach_codes
 from tarsus.kinematics.triangle import solve_triangle, to_leg_frame
@@ -183,6 +183,11 @@ def _second_tries(
     """Solve legs that failed in the first pass: facing away from the foot, or at the nearest reachable point."""
     away = solve_triangle(xp, g, x, y, z, knee=knee, facing=-1, sideways=sideways)
     turned = reach_codes(xp, g, away) == 0
+    excluded = tibia_bend(xp, g, knee=knee) * knee > 0
+    if xp is not np or excluded.any():
+        # Why a leg fails whose limits allow the other knee branch only, that branch tells.
+        other = reach_codes(xp, g, solve_triangle(xp, g, x, y, z, knee=-knee, sideways=sideways))
+        codes = xp.where(excluded, other, codes)
     miss2, *nearest = nearest_angles(xp, g, x, y, z, knee=knee, sideways=sideways)
     # Where a joint angle has no effect (foot on its axis) or little (straight leg), the first solution may violate the
     # limits although an angle within them reaches the foot.

@@ -12,6 +12,7 @@ import numpy as np
 from tarsus.arrays import Array
 from tarsus.kinematics.batch_solver import solve_legs
 from tarsus.kinematics.leg import forward_kinematics
+from tarsus.kinematics.nearest import tibia_bend
 from tarsus.kinematics.pose import Pose
 from tarsus.kinematics.reach import Reach
 from tarsus.kinematics.triangle import solve_triangle, to_leg_frame
@@ -212,7 +213,10 @@ class _Leg:
 
     def _why_limit(self, code: Reach) -> str:
         joint = int(code) - int(Reach.COXA_LIMIT)
-        triangle = solve_triangle(np, self.robot.geometry, *np.array(self.in_leg)[:, None], knee=self.knee)
+        # The branch that the limits allow.
+        g = self.robot.geometry
+        knee = -int(tibia_bend(np, g, knee=self.knee)[0])
+        triangle = solve_triangle(np, g, *np.array(self.in_leg)[:, None], knee=knee)
         angle = math.degrees(float(triangle[joint][0]))
         low, high = (math.degrees(v) for v in self.robot.limits[0, joint])
         above, below = (angle - high) % 360.0, (low - angle) % 360.0
