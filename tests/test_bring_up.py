@@ -1,6 +1,7 @@
 """The bring-up, driven end to end over a terminal by someone who looks at an emulated machine."""
 
 import dataclasses
+import json
 import os
 import pty
 import re
@@ -417,3 +418,11 @@ def test_a_terminal_that_ends_leaves(monkeypatch, tmp_path):
             _Terminal().choose("What?", {"": "yes"}, topic=Topic())
     assert run("bring-up", "strider", "--drawing-only", "--json").exit_code == 0
     assert (tmp_path / "strider.reference-pose.png").exists()
+
+
+def test_beside_a_json_document_the_dialogue_is_on_standard_error(tmp_path):
+    result = run("bring-up", "strider", tmp_path / "c.toml", "--json")
+    assert result.exit_code == 1
+    assert json.loads(result.stdout) == {"calibration": str(tmp_path / "c.toml"), "complete": False}
+    assert "[q] leave" in result.stderr
+    assert "left; nothing was saved" in result.stderr

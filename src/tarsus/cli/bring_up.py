@@ -20,17 +20,23 @@ _AGAIN = 20
 
 
 class _Terminal:
-    """A dialogue in a terminal: one line for each answer."""
+    """A dialogue in a terminal: one line for each answer; beside a JSON document it is on standard error."""
+
+    def __init__(self, *, beside: bool = False) -> None:
+        self._beside = beside
 
     def say(self, text: str) -> None:
         """Print a line."""
-        show(text)
+        if self._beside:
+            click.echo(text, err=True)
+        else:
+            show(text)
 
     def choose(self, question: str, options: Mapping[str, str], *, topic: Topic) -> str:  # noqa: ARG002
         """Ask until the answer is one of the options."""
         words = "  ".join(f"[{key or 'Enter'}] {text}" for key, text in options.items())
         for _ in range(_AGAIN):
-            show(f"{question}  {words}  [q] leave")
+            self.say(f"{question}  {words}  [q] leave")
             try:
                 answer = sys.stdin.readline()
             except (EOFError, OSError):
@@ -39,7 +45,7 @@ class _Terminal:
                 raise Left
             if answer.strip().lower() in options:
                 return answer.strip().lower()
-            show(f"{answer.strip()!r} is none of them.")
+            self.say(f"{answer.strip()!r} is none of them.")
         raise Left
 
 
@@ -77,21 +83,22 @@ def bring_up(
             click.echo(f"wrote {drawing}")
         return 0
     written = robot if robot in preset_names() else os.path.relpath(robot, path.parent)
-    terminal, again = _Terminal(), f"Resume with: tarsus bring-up {robot} {path}"
+    terminal = _Terminal(beside=as_json)
     try:
         with as_interrupts():
             found = begin(load_robot(robot), written, path, terminal, kind=bus, port=port)
-            show(f"the reference pose is drawn in {_draw(robot, path)}")
+            terminal.say(f"the reference pose is drawn in {_draw(robot, path)}")
             wizard = bring_up_of(found, path, terminal)
             wizard.perform()
+            complete = not wizard.calibration.missing
+            terminal.say(f"wrote {path}; next: tarsus run {robot} --calibration {path}")
+            code = 0
     except Left:
-        show(f"left; {_unknown(path)} {again}")
-        return 1
+        terminal.say(f"left; {_unknown(path)} Resume with: tarsus bring-up {robot} {path}")
+        complete, code = False, 1
     if as_json:
-        print_json({"calibration": str(path), "complete": not wizard.calibration.missing})
-    else:
-        show(f"wrote {path}; next: tarsus run {robot} --calibration {path}")
-    return 0
+        print_json({"calibration": str(path), "complete": complete})
+    return code
 
 
 def _unknown(path: Path) -> str:
