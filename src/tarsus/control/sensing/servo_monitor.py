@@ -134,9 +134,9 @@ class ServoMonitor:
         last, self._last = self._last or measured, measured
         for leg in self._found - self.failed.keys():
             # It is to be used again: what has told against it does not count any more.
+            assert self._evidence is not None  # what it was found by
             self._found.discard(leg)
-            if self._evidence is not None:
-                self._evidence[:, leg] = 0.0
+            self._evidence[:, leg] = 0.0
         stuck = self._stuck(measured, commanded, dt)
         if self._evidence is not None:
             self._evidence *= 0.5 ** (dt / _MEMORY)
