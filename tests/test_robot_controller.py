@@ -350,6 +350,14 @@ def test_readings_that_tell_nothing_of_the_ground_are_named_where_they_are_rejec
     assert output.limitations[0].cause == "joint_angles of LF: not finite numbers"
     output = controller.step(STILL, DT, SensorReadings(joint_angles=np.full((6, 3), math.nan), attitude=(0.0, 0.0)))
     assert len(output.limitations) == 6
+    # Where the controller gets them, it tells once.
+    controller = RobotController(STRIDER)
+    output = controller.step(STILL, DT, SensorReadings(attitude=(math.nan, 0.0)))
+    assert [each.cause for each in output.limitations] == ["attitude: not finite numbers"]
+    # Also those that it does not get any more, once it has felt the ground.
+    controller.step(STILL, DT, SensorReadings(contacts=[True] * 6))
+    output = controller.step(STILL, DT, SensorReadings(joint_angles=np.full((6, 3), math.nan)))
+    assert output.limitations[0].cause == "joint_angles of LF: not finite numbers"
 
 
 def test_a_foot_stays_where_velocities_have_moved_it_whatever_was_its_target_before():

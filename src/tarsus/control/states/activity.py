@@ -94,12 +94,15 @@ class Walking:
     def __init__(self, controller: WalkController) -> None:
         self.controller, self.measured = controller, ValidReadings()
         self._validator = ReadingsValidator(controller.robot)
+        # What is rejected of readings that the controller does not get: of the others, it tells itself.
+        self._rejected: list[Limitation] = []
 
     def step(self, command: Command, dt: float, readings: SensorReadings | None) -> None:
         """Advance by one tick."""
         felt = readings if readings is not None and readings.has_ground_feedback else None
         self.controller.step(command, dt, readings=felt)
         self.measured = self._validator.validate(readings, dt) if felt is None else self.controller.measured
+        self._rejected = rejections(self.measured) if felt is None else []
 
     @property
     def gait(self) -> Gait:
@@ -120,7 +123,6 @@ class Walking:
     def snapshot(self) -> Snapshot:
         """The robot now."""
         walk = self.controller
-        unread = () if walk.feels_ground else rejections(self.measured)
         vx, vy, wz = walk.twist.tolist()
         return Snapshot(
             walk.angles,
@@ -131,7 +133,7 @@ class Walking:
             state=RobotState.STANDING if self.stands else RobotState.WALKING,
             activity=walk.walk_state.value,
             twist=(vx, vy, wz),
-            limitations=(*walk.limitations, *unread),
+            limitations=(*walk.limitations, *self._rejected),
             felt=walk.feels_ground,
         )
 
