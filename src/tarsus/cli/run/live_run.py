@@ -146,12 +146,16 @@ def _rate(asked: float | None, plant: ServoPlant, usual: float) -> float:
             f"the wires carry {greatest:.0f} ticks per second; walking takes {least:g}, below which joints are slowed "
             "down: set a higher baud rate, or a shorter return delay"
         )
-    if not least <= asked <= greatest:
+    return _within(asked, least, greatest, f"the {greatest:.0f} Hz that the wires carry")
+
+
+def _within(rate: float, least: float, greatest: float, most: str) -> float:
+    """Return a rate; refuse one that is out of its range, whose end the text describes."""
+    if not least <= rate <= greatest:
         raise InputError(
-            f"--rate is {asked:g} Hz; it must be from {least:g} Hz, below which joints are slowed down, to the "
-            f"{greatest:.0f} Hz that the wires carry"
+            f"--rate is {rate:g} Hz; it must be from {least:g} Hz, below which joints are slowed down, to {most}"
         )
-    return asked
+    return rate
 
 
 @dataclasses.dataclass
@@ -252,12 +256,8 @@ def _simulated(robot: Robot, options: dict[str, Any], *, out: Path | None) -> di
     source: CommandSource = scenario_commands(scenario, plant)
     if options["start"] == "lying":
         source = Rising(source)
-    rate = options["rate"] or scenario.rate
-    if not _SLOWEST <= rate <= _FASTEST:
-        raise InputError(
-            f"--rate is {rate:g} Hz; it must be from {_SLOWEST:g} Hz, below which joints are slowed down, to "
-            f"{_FASTEST:g} Hz in physics, whose steps are 2 ms"
-        )
+    most = f"{_FASTEST:g} Hz in physics, whose steps are 2 ms"
+    rate = _within(options["rate"] or scenario.rate, _SLOWEST, _FASTEST, most)
     with StatusLine(quiet=True) as line:
         outcome = _run(controller, plant, source, rate, options["duration"], line)
     return _summary(robot, "simulated", None, outcome, line, out)

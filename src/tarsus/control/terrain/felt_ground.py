@@ -14,10 +14,10 @@ from tarsus.control.sensing.foot_loads import FootLoads
 from tarsus.control.sensing.swing_monitor import USUAL_LAG, SwingMonitor
 from tarsus.control.sensing.validation import ReadingsValidator, rejections
 from tarsus.control.terrain.body_motion import BodyMotion
-from tarsus.control.terrain.foot_contacts import Search, sunk_at
+from tarsus.control.terrain.foot_contacts import Search
 from tarsus.control.terrain.ground_contact import met_ground, not_sunk, put_down
 from tarsus.control.terrain.missing_ground import SLOW, MissingGround
-from tarsus.control.terrain.support import Footing, Support, Tipping, along_gravity, off_commanded
+from tarsus.control.terrain.support import Footing, Support, Tipping, along_gravity, off_commanded, sunk_at
 from tarsus.control.tick_state import TickState
 from tarsus.control.transition.executor import TransitionExecutor
 from tarsus.control.transition.foothold_transfer import FootholdTransfer
@@ -83,7 +83,7 @@ class FeltGround:
         self._centre = complex(*centre_of_mass(robot, angles)[:2].tolist())
         # What feet are given while all is as planned; ticks and times since contacts and support were looked at.
         self._inputs: FeltInputs | None = None
-        self._given, self._excluded = tuple[object, ...](), list[int]()
+        self._given: tuple[list[int], bool] = [], True
         self._rests, self._ticks, self._unread, self._idle, self._next_lift = True, 0, 0.0, 0.0, NextLift()
 
     def sense(
@@ -128,7 +128,7 @@ class FeltGround:
         estimated, age = self._loads.estimated, max(valid.contact_age, self._swings.lag - USUAL_LAG)
         self.contacts.step(measured, down, dt, age=age, count=ticks, leaving=leaving, rests=rests, estimated=estimated)
         self.condition.step([*map(self.contacts.touches, range(len(down)))], valid.attitude, dt, held=self.support.held)
-        self.offsets = self._loads.offsets(valid, angles, state, dt, out=self._excluded)
+        self.offsets = self._loads.offsets(valid, angles, state, dt, out=self._given[0])
         if self.missing.stranded and all(down):
             state = timing.with_first_lift(state, self.missing.stranded[0])
         pace = self.support.pace
@@ -152,7 +152,7 @@ class FeltGround:
         state, standing, timing, footholds = tick.gait, tick.standing, transitions.timing, transitions.footholds
         kept, before, self._idle = self._inputs, self._given, self._idle + dt
         self._still = not any(tick.twist.tolist()) or (self.body.slope.refuses and self.support.halts)
-        self._given, self._excluded = (excluded, standing), excluded
+        self._given = excluded, standing
         self._rests = self._still and not (self.missing.refuses or self.missing.places)
         if kept and self._given == before and (standing or not self._next_lift.is_due(timing, state, dt)):
             self._inputs = kept = kept.moved_by(self.body.rates.climb, self.body.rates.turn)
@@ -227,13 +227,12 @@ class FeltGround:
         missing.sees(self.ground, footholds.rest.tolist())
         waits = self.condition.carried or (self._rests and self.support.held and near == footing.down)
         searches = [] if waits else self._searches(state, footing, stands)
+        missing.lost = contacts.tips(footing, missing.sinks(deeper))
         if self._loads.estimated:
             feet = zip(footing.places, state.ground_height.tolist(), strict=True)
             depths = [self.ground.at(place) + state.elevation - height for place, height in feet]
             self._tipping.step(footing, depths, tilt, dt)
-        missing.lost = contacts.tips(footing, missing.sinks(deeper))
-        if self._loads.estimated and missing.lost is None:
-            missing.lost = self._tipping.leg
+            missing.lost = self._tipping.leg if missing.lost is None else missing.lost
         on = [on and stand for on, stand in zip(footing.down, stands, strict=True)]
         missing.step(searches, footing._replace(down=on), dt, footholds=footholds, deeper=deeper)
         # With the body higher and feet drawn in, legs are steeper beside an edge.

@@ -10,12 +10,12 @@ import numpy as np
 
 from tarsus.control.readings import RollPitch
 from tarsus.control.sensing.contact_estimator import ContactEstimator
-from tarsus.control.terrain.support import Footing, holds
+from tarsus.control.terrain.support import Footing, holds, sunk_at
 
 if TYPE_CHECKING:
     from jaxtyping import Float
 
-__all__ = ["FootContacts", "Search", "sunk_at"]
+__all__ = ["FootContacts", "Search"]
 
 # A foot that has been without contact for longer has left the ground, or has lost it [s].
 _LOST = 0.03
@@ -261,16 +261,3 @@ class FootContacts:
         """Return whether a foot that should stand counts as support."""
         grace = _GRACE if self._settled[leg] > _SETTLED else 0.0
         return self._without[leg] <= grace or self.is_open(leg)
-
-
-def sunk_at(place: complex, tilt: RollPitch, before: RollPitch = (0.0, 0.0)) -> float:
-    """Return by how much a body has sunk at a place by a change of its tilt [m].
-
-    Parameters
-    ----------
-    place : complex
-        The place, x + iy in the heading frame [m].
-    tilt, before : (roll, pitch)
-        The tilt, and the one before [rad].
-    """
-    return place.real * (tilt[1] - before[1]) - place.imag * (tilt[0] - before[0])

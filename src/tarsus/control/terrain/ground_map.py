@@ -184,11 +184,8 @@ class GroundMap:
         place : complex
             The place [m].
         """
-        return (
-            float(lowest_near(self.expected, np.array(place), within=self._scale * _OFF))
-            if self.given
-            else self.plane.at(place)
-        )
+        within = self._scale * _OFF
+        return float(lowest_near(self.expected, np.array(place), within=within)) if self.given else self.plane.at(place)
 
     def choose(self, state: GaitState, reach: Reach, footholds: FootholdTransfer) -> None:
         """Choose footholds for feet that have lifted off, once in each swing.
@@ -238,9 +235,8 @@ class GroundMap:
         """
         if not self.given:
             return False
-        return bool(
-            lowest_near(self._lies, np.array(place), within=self._scale * _EDGE) < self.plane.at(place) - self._deepest
-        )
+        lowest = lowest_near(self._lies, np.array(place), within=self._scale * _EDGE)
+        return bool(lowest < self.plane.at(place) - self._deepest)
 
     def under(
         self, start: complex, foothold: complex, elevation: float, room: tuple[float | None, float], *, clears: bool

@@ -10,7 +10,7 @@ from typing import NamedTuple
 from tarsus.control.readings import RollPitch
 from tarsus.control.walk.state import GaitState
 
-__all__ = ["HALTING", "Footing", "Support", "Tipping", "along_gravity", "holds", "off_commanded"]
+__all__ = ["HALTING", "Footing", "Support", "Tipping", "along_gravity", "holds", "off_commanded", "sunk_at"]
 
 # Rates at which the pace falls and rises [1/s].
 _FALL, _RISE = 10.0, 6.0
@@ -90,6 +90,19 @@ def off_commanded(attitude: RollPitch, state: GaitState) -> RollPitch:
     return off.real, off.imag
 
 
+def sunk_at(place: complex, tilt: RollPitch, before: RollPitch = (0.0, 0.0)) -> float:
+    """Return by how much a body has sunk at a place by a change of its tilt [m].
+
+    Parameters
+    ----------
+    place : complex
+        The place, x + iy in the heading frame [m].
+    tilt, before : (roll, pitch)
+        The tilt, and the one before [rad].
+    """
+    return place.real * (tilt[1] - before[1]) - place.imag * (tilt[0] - before[0])
+
+
 class Tipping:
     """Finds the foot at which a robot tips whose contacts are estimated.
 
@@ -120,16 +133,15 @@ class Tipping:
         footing, depths : Footing, sequence of float
             The feet that should stand; how far below the expected ground they are [m].
         tilt, dt : (roll, pitch) or None, float
-            By how much the body is tilted more than commanded, None where nothing is estimated [rad]; time since the
-            last call [s].
+            By how much the body is tilted more than commanded, None where it is not measured [rad]; time since the last
+            call [s].
         """
         if tilt is None:
             self.leg = self._before = None
             return
         share, (roll, pitch) = min(dt / _FOLLOWED, 1.0) * (self.leg is None), self._before or tilt
         self._before = roll, pitch = roll + share * (tilt[0] - roll), pitch + share * (tilt[1] - pitch)
-        turn = complex(tilt[1] - pitch, roll - tilt[0])
-        sunk = [(place * turn.conjugate()).real for place in footing.places]
+        sunk = [sunk_at(place, tilt, self._before) for place in footing.places]
         low = [leg for leg, on in enumerate(footing.down) if on and depths[leg] > self._scale * _LOW]
         if self.leg is not None:
             self.leg = self.leg if sunk[self.leg] > self._scale * _SINKS / 2 else None

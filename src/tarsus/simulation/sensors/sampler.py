@@ -86,7 +86,7 @@ class _Channel:
         waiting = self._waiting
         if time - self._taken >= self._period - _SAME_TIME:
             # Times of measurements do not add up what a tick is late.
-            self._taken = max(self._taken + self._period, time - self._period) if self._period else time
+            self._taken = max(self._taken + self._period, time - self._period)
             if self._lost is None or not next(self._lost):
                 waiting.append((time, self._disturbed(exact)))
         newest = time - self._delay
