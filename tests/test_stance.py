@@ -120,6 +120,22 @@ def test_a_default_foothold_is_in_the_middle_of_its_band(robot, height):
     assert np.abs(far - np.hypot((nearest + farthest) / 2, robot.femur_axis_offset[:, 0])).max() <= 1e-15
 
 
+@pytest.mark.parametrize("seed", [1, 2])
+def test_a_leg_stands_where_a_scan_finds_a_foothold_for_both_heights(seed):
+    """Also with several separate bands at either height, of which the widest ones have no distance in common."""
+    rng = np.random.default_rng(seed)
+    femur, tibia = (np.sort(rng.uniform(low, high, (200, 6, 2))) for low, high in ((-2.1, 2.1), (-3, 1.1)))
+    limits = np.stack([np.broadcast_to([-1.0, 1.0], femur.shape), femur, tibia], axis=-2)
+    for some in limits:
+        robot = plain_hexapod(limits=some)
+        height, rise = rng.uniform(0.02, 0.2), rng.uniform(0, 0.06)
+        found = stance_or_nan(robot, height, swing_height=rise)[:, 0]
+        grid = np.linspace(0, 0.35, STEPS)
+        for leg in range(6):
+            works = reached(robot, leg, grid, -height) & reached(robot, leg, grid, rise - height)
+            assert not (np.isnan(found[leg]) and works[:-1][works[1:]].any()), (seed, leg)
+
+
 def test_a_coxa_whose_limits_exclude_0_stands_at_its_limit():
     limits = np.tile(np.deg2rad([[20, 60], [-80, 100], [-160, 10]]), (6, 1, 1))
     limits[3:, 0] = np.deg2rad([-60, -25])

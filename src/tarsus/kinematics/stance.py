@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -91,9 +92,19 @@ def reachable_band(
     z = as_floats(xp, height, name="height")
     require_finite("height", z)
     z = z[..., None] - (g.mount_z + g.up)
-    ends = xp.sort(xp.stack(xp.broadcast_arrays(*_band_ends(xp, g, z))), axis=0)
+    return _widest_band(xp, g, [z])
+
+
+def _widest_band(
+    xp: Namespace, g: LegGeometry, heights: Sequence[Float[Array, "*#batch legs"]]
+) -> tuple[Float[Array, "*batch legs"], Float[Array, "*batch legs"]]:
+    """Return the ends of the widest band that each foot reaches at all the heights over the femur axis; else NaN."""
+    every_end = [end for z in heights for end in _band_ends(xp, g, z)]
+    ends = xp.sort(xp.stack(xp.broadcast_arrays(*every_end)), axis=0)
     lows, highs = ends[:-1, ...], ends[1:, ...]
-    between_open = _in_limits(xp, g, (lows + highs) / 2, z)
+    between_open = _in_limits(xp, g, (lows + highs) / 2, heights[0])
+    for z in heights[1:]:
+        between_open = between_open & _in_limits(xp, g, (lows + highs) / 2, z)
     zero = xp.zeros_like(ends[0, ...])
     start, best_start, best_end = zero, zero, zero
     was_open = zero > 1
@@ -266,13 +277,11 @@ def foothold_distances(robot: Robot, feet: Float[Array, "*#batch legs 3"]) -> Fl
 def _middle(
     xp: Namespace, robot: Robot, height: Float[Array, "*#batch"], swing_height: Float[Array, "*#batch"]
 ) -> Float[Array, "... legs"]:
-    """Return the middle of the band that each foot reaches on the ground and lifted; NaN where it is empty."""
-    height, swing_height = height + xp.zeros_like(swing_height), swing_height + xp.zeros_like(height)
-    # The axis of the two heights precedes those of a batch of designs.
-    shape = (1,) * (len(robot.batch_shape) - height.ndim) + height.shape
-    low, high = reachable_band(robot, xp.stack([xp.reshape(z, shape) for z in (height, height + swing_height)]))
-    nearest, farthest = xp.maximum(low[0, ...], low[1, ...]), xp.minimum(high[0, ...], high[1, ...])
-    return xp.where(nearest <= farthest, (nearest + farthest) / 2, xp.full_like(nearest, xp.nan))
+    """Return the middle of the widest band that each foot reaches on the ground and lifted; NaN where none is."""
+    g = robot.geometry.to(xp)
+    axis = g.mount_z + g.up
+    low, high = _widest_band(xp, g, [height[..., None] - axis, (height + swing_height)[..., None] - axis])
+    return (low + high) / 2
 
 
 def _why_no_stance(
