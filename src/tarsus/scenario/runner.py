@@ -119,7 +119,7 @@ def scenario_commands(scenario: Scenario, plant: Plant) -> ScenarioCommands:
         if environment is None and isinstance(command, Ground | Tilt | Force):
             raise InputError(
                 f"at {command.at:g} s: {command_text(command)}: only an ideal plant simulates what sensors measure; "
-                f"leave the command out for a {type(plant).__name__}"
+                "leave the command out"
             )
     return ScenarioCommands(scenario, plant.robot, environment)
 
