@@ -457,6 +457,31 @@ def test_a_foot_that_lifts_the_body_far_is_found_sooner_to_have_an_open_switch()
     assert open_after(-0.3, ticks=100) < 0.5 * slow < 50
 
 
+def test_a_foot_that_lifts_the_body_off_all_others_that_would_hold_it_has_an_open_switch():
+    def found(tilt, readings=(True, True, True, False, False, False), depths=(0.0, 0.0, 0.0, 0.01, 0.03, 0.02)):
+        contacts = FootContacts(6)
+        contacts.step([True] * 6, [True] * 6, 0.01)
+        contacts.find_open(STANDING, (0.0, 0.0), 0.01, depths=depths)
+        ticks = 0
+        while not any(map(contacts.is_open, range(6))) and ticks < 60:
+            ticks += 1
+            contacts.step(readings, [True] * 6, 0.01)
+            # Hanging feet are high over the ground, and may bear no load by other rules.
+            none = STANDING._replace(down=[False] * 6, centre=-0.05 + 0j)
+            contacts.find_open(none, tilt, 0.01, low=[*[True] * 5, False], depths=depths)
+        return [leg for leg in range(6) if contacts.is_open(leg)], ticks
+
+    legs, ticks = found((-0.1, 0.0))
+    assert legs == [4]
+    assert 0.25 <= 0.01 * ticks <= 0.3
+    # The deepest foot has lifted the body, and the others with it.
+    assert found((-0.1, 0.0), depths=(0.0, 0.0, 0.0, 0.03, 0.01, 0.02))[0] == [3]
+    # It is not by much, or the robot sinks at another foot, or the others hold it.
+    assert found((-0.02, 0.0))[0] == []
+    assert found((-0.1, 0.1), (False, True, True, False, False, True))[0] == []
+    assert found((-0.1, 0.0), (True, True, True, True, False, True))[0] == []
+
+
 def test_a_foot_that_lifts_off_soon_is_not_lowered_where_others_take_its_load():
     def stands(leaving, ticks, without=5, *, rests=False):
         contacts = FootContacts(2)

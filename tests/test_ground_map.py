@@ -191,10 +191,10 @@ def test_a_foot_that_crosses_a_hole_is_known_until_it_is_down():
         assert known.crossing == set()
 
 
-def body(known, reach, standing):
-    """What is known of the ground, of the reach, and of which feet stand."""
+def body(known, reach, standing, off=(0.0, 0.0)):
+    """What is known of the ground, of the reach, of which feet stand, and by how much the body is off its attitude."""
     contacts, even = SimpleNamespace(standing=standing), SimpleNamespace(deeper=0.0)
-    return SimpleNamespace(ground=known, contacts=contacts, reach=reach, roughness=even)
+    return SimpleNamespace(ground=known, contacts=contacts, reach=reach, roughness=even, off=off)
 
 
 def footing(state, places):
@@ -210,7 +210,7 @@ def test_no_foot_over_a_hole_that_is_seen_stands_on_ground_that_its_switch_does_
     known.see(ValidReadings(ground=GroundHeights(heights=np.where(hole, -depth, 0.0))), state)
     known.step([(place, 0.0) for place in places[1:]], None, state, 0.03, drift=0j)
     known.choose(state, reach, footholds)
-    near = not_sunk(state, body(known, reach, [True] * 6), footing(state, places), tips=False)
+    near, _ = not_sunk(state, body(known, reach, [True] * 6), footing(state, places), tips=False)
     assert near == [depth == 0.0] * 6
 
 
@@ -235,8 +235,23 @@ def test_no_foot_that_is_far_off_the_ground_stands_on_ground_that_its_switch_doe
     state = state._replace(ground_height=np.where(np.arange(6) == 0, rise, 0.0))
     places, feet = [complex(foot) - state.origin for foot in state.foot], [stands, *[True] * 5]
     known.step([(place, 0.0) for place in places[1:]], None, state, 0.03, drift=0j)
-    found = not_sunk(state, body(known, reach, feet), footing(state, places), tips=False)
+    found, low = not_sunk(state, body(known, reach, feet), footing(state, places), tips=False)
     assert found == [near] * 6
+    # Where another foot lifts the body, one that is high tells nothing of the others.
+    assert low == ([near, *[True] * 5] if rise > 0.0 else [near] * 6)
+    assert not_sunk(state, body(known, reach, feet), footing(state, places), tips=True) == ([False] * 6,) * 2
+
+
+def test_a_foot_that_is_deep_and_has_lifted_the_body_stands_on_ground_as_high_as_expected():
+    (state, reach, _), known = stepping(), GroundMap()
+    reach.lowest[0] = -0.1
+    state = state._replace(ground_height=np.where(np.arange(6) == 0, -0.06, 0.0))
+    places, feet = [complex(foot) - state.origin for foot in state.foot], [False, *[True] * 5]
+    known.step([(place, 0.0) for place in places[1:]], None, state, 0.03, drift=0j)
+    for lifted, near in ((0.0, False), (0.02, True), (-0.02, False)):
+        off = 0.0, -lifted / places[0].real
+        found, low = not_sunk(state, body(known, reach, feet, off), footing(state, places), tips=False)
+        assert found == low == [near] * 6
 
 
 def test_a_foot_passes_over_what_is_on_its_way_and_rises_first_where_that_is_near():

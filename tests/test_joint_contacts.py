@@ -10,6 +10,7 @@ from tarsus.control.readings import ValidReadings
 from tarsus.control.sensing.foot_loads import FootLoads
 from tarsus.control.sensing.joint_contacts import JointContacts
 from tarsus.simulation import SensorSuite, SimulatedPlant, terrain
+from tarsus.simulation.sensors.suite import FootSwitch, Sensor
 
 STRIDER = tarsus.load_robot("strider")
 DT = 0.01
@@ -63,6 +64,23 @@ def test_a_foot_whose_switch_stays_open_does_not_hold_up_the_walk_over_obstacles
         ways.append(plant.state.body.position[0] / (0.146 * 4))
     # Single walks are chance: 0.64 to 0.89 in eight.
     assert np.mean(ways) > 0.75
+
+
+@pytest.mark.no_cover
+@pytest.mark.parametrize(
+    ("name", "leg", "delay", "speed"), [("strider", 4, 0.05, 0.146), ("makeyourpet", 0, 0.05, 0.07)]
+)
+def test_an_open_switch_holds_up_no_walk_whose_sensors_are_late(name, leg, delay, speed):
+    robot, late = tarsus.load_robot(name), Sensor(delay=delay)
+    sensors = SensorSuite(contacts=FootSwitch(delay=delay), attitude=late, joint_angles=late)
+    plant, controller = SimulatedPlant(robot, sensors=sensors), tarsus.RobotController(robot)
+    plant.start(controller.output)
+    for _ in range(500):
+        readings = plant.step(controller.output, DT)
+        contacts = [touches and number != leg for number, touches in enumerate(readings.contacts)]
+        controller.step((speed, 0.0, 0.0), DT, dataclasses.replace(readings, contacts=contacts))
+    # Without more time for contacts that are late, it takes the foot for one on an edge: 0.1 to 0.3.
+    assert plant.state.body.position[0] > 0.85 * speed * 5
 
 
 def test_servos_that_follow_at_once_tell_no_contacts():

@@ -43,11 +43,12 @@ def stepped(
     twist=(0.0, 0.0, 0.0),
     leans=0.0,
     lost=None,
+    age=0.0,
 ):
     missing.twist, missing.lost = twist, lost
     searches = [Search(*search, sunk=sunk[search[0]], raised=raised, leans=leans) for search in searches]
     footholds = SimpleNamespace(rest=np.array(REST), placement_radii=[0.05] * 6)
-    missing.step(searches, Footing(feet, stands, centre, 0.1), dt, footholds=footholds, deeper=deeper)
+    missing.step(searches, Footing(feet, stands, centre, 0.1), dt, footholds=footholds, deeper=deeper, age=age)
     return missing
 
 
@@ -268,11 +269,13 @@ def test_where_a_leg_may_rest_on_the_edge_of_a_step_the_walk_goes_on_with_other_
 
 
 def test_a_foot_that_its_leg_holds_up_at_the_end_of_its_reach_does_not_search_for_long():
-    def ticks(*, raised, falls=False):
-        missing = MissingGround(NAMES)
-        return next((n for n in range(60) if stepped(missing, [(0, 0.04, falls, True)], raised=raised).places), None)
+    def ticks(*, raised, falls=False, age=0.0):
+        missing, search = MissingGround(NAMES), [(0, 0.04, falls, True)]
+        return next((n for n in range(60) if stepped(missing, search, raised=raised, age=age).places), None)
 
     assert 28 <= ticks(raised=0.02) <= 31
+    # Late contacts of other feet tell later that this one stands, and its switch is open.
+    assert 53 <= ticks(raised=0.02, age=0.05) <= 56
     # A servo that lags behind a foot on its way down holds up nothing.
     assert ticks(raised=0.02, falls=True) is None
     assert ticks(raised=0.005) is None

@@ -213,10 +213,12 @@ class FeltGround:
     def _find_ground(self, state: GaitState, footing: Footing, footholds: FootholdTransfer, dt: float) -> list[bool]:
         """Decide where feet step that find no ground; return which stand, or would, with the robot in the air."""
         contacts, missing, deeper = self.contacts, self.missing, self.body.roughness.deeper
-        near = not_sunk(state, self.body, footing, tips=bool(missing.tips or missing.places))
+        near, low = not_sunk(state, self.body, footing, tips=bool(missing.tips or missing.places))
         attitude = self.measured.attitude
         tilt = None if attitude is None else off_commanded(attitude, state)
-        contacts.find_open(footing._replace(down=near), tilt, dt)
+        feet = zip(footing.places, state.ground_height.tolist(), strict=True)
+        depths = [self.ground.at(place) + state.elevation - height for place, height in feet]
+        contacts.find_open(footing._replace(down=near), tilt, dt, low=low, depths=depths)
         missing.twist = state.twist.value.tolist()
         missing.turn_to(state.yaw)
         if self.condition.carried:
@@ -229,12 +231,11 @@ class FeltGround:
         searches = [] if waits else self._searches(state, footing, stands)
         missing.lost = contacts.tips(footing, missing.sinks(deeper))
         if self._loads.estimated:
-            feet = zip(footing.places, state.ground_height.tolist(), strict=True)
-            depths = [self.ground.at(place) + state.elevation - height for place, height in feet]
             self._tipping.step(footing, depths, tilt, dt)
             missing.lost = self._tipping.leg if missing.lost is None else missing.lost
         on = [on and stand for on, stand in zip(footing.down, stands, strict=True)]
-        missing.step(searches, footing._replace(down=on), dt, footholds=footholds, deeper=deeper)
+        footing = footing._replace(down=on)
+        missing.step(searches, footing, dt, footholds=footholds, deeper=deeper, age=contacts.age)
         # With the body higher and feet drawn in, legs are steeper beside an edge.
         self.body.roughness.landed(missing.edge)
         return stands

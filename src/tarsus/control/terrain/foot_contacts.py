@@ -27,8 +27,8 @@ _LEAVES = 0.15
 _SEARCH = 1.5
 # How long a foot has stood that may lose contact for that time and still be support [s].
 _SETTLED = 0.05
-# By how much a foot lifts the body whose switch stays open [m].
-_LIFTS = 0.003
+# By how much a foot lifts the body whose switch stays open, at least, and where the others do not hold the robot [m].
+_LIFTS, _LIFTS_ALONE = 0.003, 0.008
 # How long other feet lose contact, while a foot that should stand has none, until its switch is taken to be open [s]; a
 # foot that lifts the body more counts for more, up to this factor.
 _OPEN_AFTER, _MOST_LIFT = 0.4, 4.0
@@ -149,7 +149,15 @@ class FootContacts:
         for leg, on in enumerate(down):
             self._searched[leg] = self._searched[leg] + dt if on and not (rests or self.standing[leg]) else 0.0
 
-    def find_open(self, footing: Footing, tilt: RollPitch | None, dt: float) -> None:
+    def find_open(
+        self,
+        footing: Footing,
+        tilt: RollPitch | None,
+        dt: float,
+        *,
+        low: Sequence[bool] | None = None,
+        depths: Sequence[float] | None = None,
+    ) -> None:
         """Find a switch that stays open: a foot that pushes on the ground lifts the body off others.
 
         Parameters
@@ -157,22 +165,44 @@ class FootContacts:
         footing : Footing
             The feet that should stand.
         tilt : (roll, pitch) or None
-            Measured [rad]; None where it is not.
+            Measured, off the attitude to keep [rad]; None where it is not.
         dt : float
             Time since the last tick [s].
+        low : sequence of bool, optional
+            Which feet may have lifted the body, and others; those that should stand by default.
+        depths : sequence of float, optional
+            How far below the expected ground feet are [m]: of those that may have lifted the body, the deepest has.
         """
-        shaken = any(on and 0.0 < time <= _GRACE for on, time in zip(footing.down, self._without, strict=True))
+        places, down = footing.places, footing.down
+        shaken = any(on and 0.0 < time <= _GRACE for on, time in zip(down, self._without, strict=True))
         first, self._last = self._last is None, tilt or self._last
         last = self._last or (0.0, 0.0)
-        for leg, on in enumerate(footing.down):
+        for leg, place in enumerate(places):
             if first or self._without[leg] <= 0.0:
                 self._tilts[leg] = last
-            self.sunk[leg] = sunk_at(footing.places[leg], last, self._tilts[leg])
-            if on and shaken and self._without[leg] > _GRACE:
-                lifts = 1.0 if tilt is None else -self.sunk[leg] / (self._scale * _LIFTS)
-                self._evidence[leg] += dt * min(lifts, _MOST_LIFT) * (lifts >= 1.0)
+            self.sunk[leg] = sunk_at(place, last, self._tilts[leg])
+        alone = [] if tilt is None else self._lifting_alone(footing._replace(down=list(low or down)), tilt)
+        least = math.inf if tilt is None else self._scale * _LIFTS
+        shakes = [on and shaken and self._without[leg] > _GRACE for leg, on in enumerate(down)]
+        lifting = [leg for leg, on in enumerate(shakes) if on and (tilt is None or -self.sunk[leg] >= least)]
+        if candidates := alone or lifting:
+            leg = max(candidates, key=(depths or self._without).__getitem__)
+            self._evidence[leg] += dt * (_MOST_LIFT if alone else min(max(-self.sunk[leg] / least, 1.0), _MOST_LIFT))
         if tilt is not None:
             self._balance(footing, tilt, dt)
+
+    def _lifting_alone(self, footing: Footing, tilt: RollPitch) -> list[int]:
+        """Return the legs whose feet have lifted the body that the others do not hold, but would together with one."""
+        places, down, centre, _ = footing
+        bears = [places[leg] for leg, on in enumerate(down) if on and self._bears(leg)]
+        without = [leg for leg, on in enumerate(down) if on and not self._bears(leg)]
+        least = self._scale * _LIFTS_ALONE
+        # A robot that sinks at another foot is not held up by one of them.
+        sinks = any(self.sunk[leg] > least / 2 for leg in without)
+        if not without or sinks or len(bears) < _FEWEST or holds(bears, centre):
+            return []
+        lifts = [leg for leg in without if min(-self.sunk[leg], -sunk_at(places[leg], tilt)) > least]
+        return [leg for leg in lifts if self._without[leg] > _UNHELD and holds([*bears, places[leg]], centre)]
 
     def _balance(self, footing: Footing, tilt: RollPitch, dt: float) -> None:
         """Find a switch that stays open: a robot that does not tip stands on a foot that it does not feel."""

@@ -11,7 +11,7 @@ from tarsus.control.terrain.body_motion import BodyMotion
 from tarsus.control.terrain.foot_contacts import FootContacts
 from tarsus.control.terrain.missing_ground import MissingGround
 from tarsus.control.terrain.reach import Reach
-from tarsus.control.terrain.support import HALTING, Footing
+from tarsus.control.terrain.support import HALTING, Footing, sunk_at
 from tarsus.control.walk.felt_feet import FeltFoot
 from tarsus.control.walk.state import GaitState
 from tarsus.control.walk.step_timing import StepTiming
@@ -182,11 +182,11 @@ def _with(feet: Sequence[FeltFoot], leg: int, **values: Any) -> list[FeltFoot]:
     return [foot._replace(**values) if index == leg else foot for index, foot in enumerate(feet)]
 
 
-def not_sunk(state: GaitState, body: BodyMotion, footing: Footing, *, tips: bool) -> list[bool]:
-    """Return which feet should stand and may bear load that is not felt.
+def not_sunk(state: GaitState, body: BodyMotion, footing: Footing, *, tips: bool) -> tuple[list[bool], list[bool]]:
+    """Return which feet should stand and may bear load that is not felt; and which may where one lifts the body.
 
-    None may while one of them is not close to the ground, or at the end of its reach: its leg may rest on an edge, or
-    lean against a wall.
+    None may while one of them is deep, or at the end of its reach: its leg may rest on an edge. Nor while one is high
+    over the ground, as of a robot that leans against a wall, unless another foot has lifted it there.
 
     Parameters
     ----------
@@ -195,10 +195,14 @@ def not_sunk(state: GaitState, body: BodyMotion, footing: Footing, *, tips: bool
     footing, tips : Footing, bool
         The feet that should stand; whether the robot tips or feet step back: then, none may.
     """
-    ground, scale, stands, near = body.ground, body.reach.scale, body.contacts.standing, list[bool]()
-    most = min(scale * _HANGS + body.roughness.deeper, _HANGS_LOW * footing.height)
+    ground, scale, stands, low = body.ground, body.reach.scale, body.contacts.standing, list[bool]()
+    most, deep = min(scale * _HANGS + body.roughness.deeper, _HANGS_LOW * footing.height), tips
     for leg, over in enumerate((state.ground_height - state.elevation).tolist()):
-        place, high = footing.places[leg], math.inf if stands[leg] else scale * _HIGH
+        place, on = footing.places[leg], footing.down[leg]
+        off, high = over - ground.at(place), math.inf if stands[leg] else scale * _HIGH
         hangs = ground.is_hole(place) or (body.reach.hangs(leg, over) and not stands[leg])
-        near.append(footing.down[leg] and -most < over - ground.at(place) < high and not hangs)
-    return near if near == footing.down and not tips else [False] * len(near)
+        # A foot that has lifted the body is as much higher over the ground.
+        deep |= on and (off + max(-sunk_at(place, body.off), 0.0) <= -most or hangs)
+        low.append(on and off < high)
+    none = [False] * len(low)
+    return (none, none) if deep else (low if low == footing.down else none, low)

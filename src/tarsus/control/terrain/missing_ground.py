@@ -23,8 +23,9 @@ _DEEP, _ROUGHLY_DEEP = 0.75, 1.6
 _SLOWS, _STANDS, _SLOWEST = 0.005, 0.02, 0.25
 # A foot that is measured higher than commanded by more is held up by its leg [m]; where it is at less depth than one of
 # these, over the body height and [m], that leg may rest on the edge of a step; how long that lasts until the foot does
-# not search on [s].
-_HELD_UP, _STEP, _LOW_STEP, _HELD = 0.007, 0.5, 0.05, 0.3
+# not search on [s], besides so many times the age of the contacts: on ground that an open switch does not tell of, a
+# foot is held up, too, and other feet tell of that before.
+_HELD_UP, _STEP, _LOW_STEP, _HELD, _LATER = 0.007, 0.5, 0.05, 0.3, 5.0
 # A foot that lifts the body by more stands on ground that is not felt: the robot does not tip towards it [m].
 _LIFTS = 0.008
 # A robot that its feet do not hold tips where it sinks by more than the first. A foot where it is off its attitude by
@@ -126,7 +127,14 @@ class MissingGround:
         return self._tries[leg] > len(_BACK)
 
     def step(
-        self, searches: Sequence[Search], footing: Footing, dt: float, *, footholds: FootholdTransfer, deeper: float
+        self,
+        searches: Sequence[Search],
+        footing: Footing,
+        dt: float,
+        *,
+        footholds: FootholdTransfer,
+        deeper: float,
+        age: float,
     ) -> None:
         """Decide for a tick.
 
@@ -136,8 +144,9 @@ class MissingGround:
             Feet that should stand and feel nothing.
         footing, dt : Footing, float
             The feet, and which of them stand; length of the tick [s].
-        footholds, deeper : FootholdTransfer, float
-            Rest footholds, and how far from these feet may stand; how much deeper ground may be than expected [m].
+        footholds, deeper, age : FootholdTransfer, float, float
+            Rest footholds, and how far from these feet may stand; how much deeper ground may be than expected [m]; age
+            of the contacts [s].
         """
         (feet, stands, centre, height), rest = footing, footholds.rest.tolist()
         if not searches:
@@ -170,7 +179,7 @@ class MissingGround:
             # At another place, a foot does not search for long at the end of its reach.
             held_up = raised > self._scale * _HELD_UP and depth - raised < max(_STEP * height, self._scale * _LOW_STEP)
             self._held[leg] = (before.get(leg, 0.0) + dt) * (held_up and not falls)
-            long = not lasts or self._held[leg] > _HELD
+            long = not lasts or self._held[leg] > _HELD + _LATER * age
             hangs = not falls and (depth > deep or not lasts) if leg in self.places else long
             missing = depth - max(raised, 0.0) > _DEEP * height + _ROUGHLY_DEEP * deeper or hangs
             missing &= abs(leans) < max(self._scale * _LEANS, deeper)
