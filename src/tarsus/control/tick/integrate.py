@@ -26,16 +26,15 @@ def integrated(walk: WalkComponents, tick: TickState, dt: float) -> TickState:
     inputs = _step_inputs(walk, tick, dt)
 
     def integrate(time: float) -> GaitState:
-        return targets.apply(
-            moved_vertically(advance(tick.gait, inputs, time), inputs, time), time, swing_time=timing.swing_time
-        )
+        moved = moved_vertically(advance(tick.gait, inputs, time), inputs, time)
+        return targets.apply(moved, time, swing_time=timing.swing_time)
 
     scaling = walk.time_scaling
     if inputs.felt is None:
         after = scaling.advance(integrate, walk.solver.angles, dt)
     else:
         after = scaling.follow(integrate, walk.solver.angles, dt, exact=inputs.felt.exact)
-    targets.step(dt * walk.time_scaling.rate, after.down)
+    targets.step(dt * scaling.rate, after.down)
     return _finished(walk, tick, after, dt)
 
 
@@ -82,7 +81,7 @@ def _finished(walk: WalkComponents, tick: TickState, state: GaitState, dt: float
         walk.transitions.footholds.feet_landed(landed)
     state = walk.transitions.finish(state, dt)
     if tick.standing:
-        return TickState(state, tick.twist, tick.walk_state, tick.limitations)
+        return tick._replace(gait=state)
     follows_twist = any(tick.twist.tolist())
     still = not (follows_twist or any(state.twist.value.tolist())) and bool(state.down.all())
     following = next_walk_state(
@@ -92,4 +91,4 @@ def _finished(walk: WalkComponents, tick: TickState, state: GaitState, dt: float
         changes_gait=walk.transitions.changes_gait,
         searches=walk.ground.support.halts,
     )
-    return TickState(state, tick.twist, following, tick.limitations)
+    return tick._replace(gait=state, walk_state=following)

@@ -69,7 +69,7 @@ def limited(
     shifted = transitions.pose.set_shift(shift, state.shift.value)
     if not steps or (standing and not shifted):
         # Every foot stays on the ground until the body is over those that stay.
-        return TickState(state if steps else tick.gait, tick.twist, tick.walk_state, grant.limitations)
+        return tick._replace(gait=state if steps else tick.gait, limitations=grant.limitations)
     assert grant.target is not None  # the governor sets it
     following = tick.walk_state
     if standing:
