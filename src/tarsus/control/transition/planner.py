@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from typing import NamedTuple
 
 import numpy as np
 
@@ -35,18 +34,6 @@ __all__ = ["TransitionPlanner"]
 _LEAST_FRACTION = 0.02
 # Differences below this are rounding.
 _SAME = 1e-9
-
-
-class _Path(NamedTuple):
-    """The path from the present stance to the commanded one, and how much of it is feasible."""
-
-    start: StanceTarget
-    end: StanceTarget
-    fraction: float = 1.0
-    cause: Cause | None = None
-
-    def at(self, fraction: float) -> StanceTarget:
-        return self.start.towards(self.end, fraction)
 
 
 class TransitionPlanner:
@@ -123,45 +110,48 @@ class TransitionPlanner:
         robot = self._robot
         end = present if stay and present else target_stance(robot, parameters, present)
         yield
-        path = _Path(present or end, end)
-        if path.start is not end:
-            fraction, cause = yield from reachable_fraction(robot, path.start, end)
-            if cause is not None and fraction == 0:
+        # How much of the path is feasible, and what limits that.
+        start, feasible = present or end, 1.0
+        cause: Cause | None = None
+        if start is not end:
+            feasible, cause = yield from reachable_fraction(robot, start, end)
+            if cause is not None and feasible == 0:
                 return cause
-            path = path._replace(fraction=fraction, cause=cause)
             yield
-        fraction = first_increment(robot, path.start, end, path.fraction)
-        if np.abs(end.rest - path.start.rest).max() > _SAME:
+        fraction = first_increment(robot, start, end, feasible)
+        if np.abs(end.rest - start.rest).max() > _SAME:
             yield
-        limits = yield from self._limits(parameters, path.at(fraction))
-        if not (limits.feasible or limits.balanced or path.start is end or parameters.gait.body_shift):
+        goal = start.towards(end, fraction)
+        limits = yield from self._limits(parameters, goal)
+        if not (limits.feasible or limits.balanced or start is end or parameters.gait.body_shift):
             sets = support_sets(parameters.gait, parameters.excluded)
             check = StabilityCheck(robot, sets, parameters.excluded)
-            fraction = yield from balanced_fraction(check, path.start, end, fraction)
-            path = path._replace(fraction=fraction, cause=TIPPING)
+            fraction = yield from balanced_fraction(check, start, end, fraction)
             if fraction == 0:
                 return TIPPING
-            limits = yield from self._limits(parameters, path.at(fraction))
+            feasible, cause = fraction, TIPPING
+            goal = start.towards(end, fraction)
+            limits = yield from self._limits(parameters, goal)
         while not limits.feasible:
-            cause = self._cause(parameters, path.at(fraction), limits)
             fraction /= 2
-            if fraction < _LEAST_FRACTION or path.start is end:
-                return cause
+            if fraction < _LEAST_FRACTION or start is end:
+                return self._cause(parameters, goal, limits)
             yield
-            limits = yield from self._limits(parameters, path.at(fraction))
-        goal = path.at(fraction)
+            goal = start.towards(end, fraction)
+            limits = yield from self._limits(parameters, goal)
         timing = yield from cycle_timing(
             robot, parameters.gait, goal.stand, limits, self._joint_limits, cycle_time=parameters.cycle_time
         )
         final = with_stroke_limits(limits, timing.stroke, timing.turning, duty_factor=parameters.gait.duty_factor)
         yield
-        stepping, on_path = yield from self._path_limits(parameters, path.start, goal, final)
+        stepping, on_path = yield from self._path_limits(parameters, start, goal, final)
         if not on_path.feasible:
             return self._path_cause(on_path)
-        shortfalls = () if end is present else self._shortfalls(parameters, path)
+        reached = start.towards(end, feasible)
+        shortfalls = () if end is present else self._shortfalls(parameters, end, reached, cause or UNREACHABLE)
         return StanceTransition(
             parameters=parameters,
-            complete=fraction == path.fraction,
+            complete=fraction == feasible,
             keeps_posture=end is present,
             posture=goal.posture,
             rest=goal.rest,
@@ -206,13 +196,14 @@ class TransitionPlanner:
             return TIPPING._replace(reason=f"{TIPPING.reason} on the way")
         return Cause("could not stand and step on the way", self._robot.leg_names[limits.limiting_leg])
 
-    def _shortfalls(self, parameters: WalkParameters, path: _Path) -> tuple[Limitation, ...]:
+    def _shortfalls(
+        self, parameters: WalkParameters, asked: StanceTarget, reached: StanceTarget, cause: Cause
+    ) -> tuple[Limitation, ...]:
         """Return what of the commanded stance is not feasible."""
-        reached, geometry = path.at(path.fraction), self._robot.geometry
+        geometry = self._robot.geometry
         mount = geometry.mount_x + 1j * geometry.mount_y
-        missing = float((np.abs(path.end.rest - mount) - np.abs(reached.rest - mount)).mean())
-        width = parameters.stance_width - missing
-        return stance_limitations(parameters, reached.posture, path.cause or UNREACHABLE, stance_width=width)
+        missing = float((np.abs(asked.rest - mount) - np.abs(reached.rest - mount)).mean())
+        return stance_limitations(parameters, reached.posture, cause, stance_width=parameters.stance_width - missing)
 
 
 def _timing_limitations(parameters: WalkParameters, timing: CycleTiming) -> tuple[Limitation, ...]:
