@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, NamedTuple, Protocol, Self
+from typing import TYPE_CHECKING, Any, NamedTuple, Self, TypeAlias
 
 import numpy as np
 
@@ -64,17 +64,6 @@ class Snapshot(NamedTuple):
     twist: tuple[float, float, float] = (0.0, 0.0, 0.0)
     limitations: tuple[Limitation, ...] = ()
     felt: bool = False
-
-
-class Activity(Protocol):
-    """Something that moves all joints tick by tick."""
-
-    def step(self, command: Command, dt: float, readings: SensorReadings | None) -> None:
-        """Advance by one tick."""
-
-    @property
-    def snapshot(self) -> Snapshot:
-        """The robot now."""
 
 
 class Walking:
@@ -171,7 +160,7 @@ class Playing:
         """Whether the sequence is at its end, or back at its start where it returns."""
         return self._player.done
 
-    def step(self, command: Command, dt: float, readings: SensorReadings | None) -> None:  # noqa: ARG002 - the protocol's
+    def step(self, command: Command, dt: float, readings: SensorReadings | None) -> None:  # noqa: ARG002 - as of all activities
         """Advance by one tick."""
         self._player.step(dt)
 
@@ -245,3 +234,7 @@ class Resting:
 
     def step(self, command: Command, dt: float, readings: SensorReadings | None) -> None:
         """Do nothing."""
+
+
+Activity: TypeAlias = Walking | Playing | Resting
+"""What moves all joints, tick by tick."""
