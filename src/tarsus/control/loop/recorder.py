@@ -53,8 +53,8 @@ class Recorder:
         self._measured: list[Any] = []
         self._events: list[Event] = []
         self._unmet: dict[tuple[Any, ...], Unmet] = {}
-        # Every limitation that is present or was lately: since when, its event's number, its last tick and value.
-        self._present: dict[_Key, tuple[float, int, float, Limitation]] = {}
+        # Every limitation that is present or was lately: its event's number, and its last value.
+        self._present: dict[_Key, tuple[int, Limitation]] = {}
         self._counts: dict[str, int] = {}
 
     @property
@@ -92,7 +92,8 @@ class Recorder:
     def _limited(self) -> list[tuple[float, Limitation]]:
         """Limitations of the last two ticks, as some come and go from tick to tick, and since when they are there."""
         lately = self._times[-2:][0]
-        return [(since, limitation) for since, _, last, limitation in self._present.values() if last >= lately]
+        present = ((self._events[number], limitation) for number, limitation in self._present.values())
+        return [(event.time, limitation) for event, limitation in present if event.until >= lately]
 
     def _note_unmet(self, since: float, limitation: Limitation) -> None:
         key = (*limitation.key, since)
@@ -124,19 +125,15 @@ class Recorder:
 
     def _note_limitations(self, limitations: tuple[Limitation, ...]) -> None:
         """Note the limitations of a tick; one that comes and goes from tick to tick is one event."""
-        time = self.time
-        present: dict[_Key, tuple[float, int, float, Limitation]] = {}
+        time, present = self.time, dict[_Key, tuple[int, Limitation]]()
         for limitation in limitations:
-            known = self._present.get(limitation.key)
-            if known is None:
+            number, _ = self._present.get(limitation.key, (len(self._events), limitation))
+            if number == len(self._events):
                 self.note("limit", limitation.text())
-                since, number = time, len(self._events) - 1
-            else:
-                since, number, _, _ = known
             self._events[number] = self._events[number]._replace(until=time)
-            present[limitation.key] = (since, number, time, limitation)
-        lately = {key: known for key, known in self._present.items() if known[2] > time - _GAP}
-        self._present = {**lately, **present}
+            present[limitation.key] = number, limitation
+        lately = {key: known for key, known in self._present.items() if self._events[known[0]].until > time - _GAP}
+        self._present = lately | present
 
     def recording(self, *, name: str, rate: float) -> Recording:
         """Return the recording.
