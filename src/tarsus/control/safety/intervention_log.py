@@ -4,12 +4,15 @@ from __future__ import annotations
 
 from collections import deque
 from collections.abc import Mapping, Set
+from operator import attrgetter
 from types import MappingProxyType
 
 from tarsus.control.safety.interventions import GuardState, Intervention, InterventionKind, Violation
 from tarsus.robot.robot import Robot
 
 __all__ = ["InterventionLog"]
+
+_EXCESS = attrgetter("excess")
 
 
 class InterventionLog:
@@ -51,12 +54,12 @@ class InterventionLog:
         worst: dict[InterventionKind, Intervention] = {}
         for violation in violations:
             found = violation.named(self._robot, time)
-            worst[found.kind] = _worse(worst.get(found.kind, found), found)
+            worst[found.kind] = max(worst.get(found.kind, found), found, key=_EXCESS)
         for kind, found in worst.items():
             if kind not in self._active:
                 self._counts[kind] = self._counts.get(kind, 0) + 1
                 self.latest.append(found)
-            self._worst[kind] = _worse(self._worst.get(kind, found), found)
+            self._worst[kind] = max(self._worst.get(kind, found), found, key=_EXCESS)
         self._active = worst.keys()
         return tuple(worst.values())
 
@@ -72,7 +75,3 @@ class InterventionLog:
         lines = [f"{total} intervention{'s' * (total != 1)} in {time:.2f} s, state: {state}"]
         lines += [f"  {number} x {self._worst[kind].text()}" for kind, number in self._counts.items()]
         return "\n".join(lines)
-
-
-def _worse(before: Intervention, found: Intervention) -> Intervention:
-    return found if found.excess > before.excess else before
