@@ -85,7 +85,8 @@ class Environment:
         leg, height : int, float
             Number of the leg; over flat ground [m].
         """
-        self._height[self._index(leg)], self._contacts = _finite("height", height), True
+        require_leg_number("environment", leg, len(self._height))
+        self._height[leg], self._contacts = _finite("height", height), True
 
     def set_tilt(self, roll: float, pitch: float) -> None:
         """Set by how much the ground is tilted; an attitude sensor is present from then on.
@@ -105,7 +106,8 @@ class Environment:
         leg, force : int, float
             Number of the leg; ground on foot [N].
         """
-        self._force[self._index(leg)], self._forces = _finite("force", force), True
+        require_leg_number("environment", leg, len(self._force))
+        self._force[leg], self._forces = _finite("force", force), True
 
     def readings(self, output: ControlOutput) -> dict[str, Any]:
         """Return what is measured, by the names of `SensorReadings`.
@@ -121,11 +123,6 @@ class Environment:
             "attitude": self._tilted(output) if self._attitude else None,
             "forces": self._loads(output.feet, output.contacts | touching) if self._forces else None,
         }
-
-    def _index(self, leg: int) -> int:
-        """Return the number of a leg that the robot has."""
-        require_leg_number("environment", leg, len(self._height))
-        return leg
 
     def _tilted(self, output: ControlOutput) -> RollPitch:
         """Return roll and pitch: the body's, the ground's, and those of its plane against that of the feet [rad]."""
