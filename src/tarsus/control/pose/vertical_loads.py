@@ -85,13 +85,10 @@ class VerticalLoads:
             return (0.0,) * len(feet)
         bear = [min(load / (_BEARS * total), 1.0) for load in self._loads]
         if valid.forces is None:
-            return balanced_forces(feet, bear, self._centre_of(angles), min(total, self._weight))
+            if self._centre is None:
+                # As it was when it was first of use: it moves little in B.
+                self._centre = centre_of_mass(self._robot, angles)[:2].tolist()
+            return balanced_forces(feet, bear, self._centre, min(total, self._weight))
         loaded = list(zip(self._loads, feet, strict=True))
         centre = [sum(load * foot[axis] for load, foot in loaded) / total for axis in (0, 1)]
         return balanced_forces(feet, bear, centre, total)
-
-    def _centre_of(self, angles: Float[np.ndarray, "legs 3"]) -> list[float]:
-        """Return the centre of mass, as it was when it was first of use: it moves little in B."""
-        if self._centre is None:
-            self._centre = centre_of_mass(self._robot, angles)[:2].tolist()
-        return self._centre
