@@ -4,12 +4,11 @@ from __future__ import annotations
 
 import math
 from collections import UserDict, deque
-from collections.abc import Sequence
-from typing import TYPE_CHECKING, TypeAlias
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from tarsus.control.readings import ValidReadings, Vector
+from tarsus.control.readings import ValidReadings
 from tarsus.errors import InputError
 from tarsus.robot.robot import JOINTS, require_leg_number
 
@@ -18,7 +17,6 @@ if TYPE_CHECKING:
 
 __all__ = ["FailedJoints", "ServoMonitor"]
 
-_Measured: TypeAlias = Sequence[Vector | None]
 # How often joints are looked at, but for rounding [s].
 _PERIOD = 0.04 * (1 - 1e-6)
 # A joint may lag behind its command for so long [s].
@@ -101,9 +99,9 @@ class ServoMonitor:
         # Legs that have been found.
         self._found = set[int]()
         # What was measured and commanded, since joints were last looked at for whether they are stuck.
-        self._compared: list[tuple[_Measured, Float[np.ndarray, "legs 3"]]] = []
+        self._compared: list[tuple[Float[np.ndarray, "legs 3"], Float[np.ndarray, "legs 3"]]] = []
         self._time, self._since = 0.0, 0.0
-        self._last: _Measured | None = None
+        self._last: Float[np.ndarray, "legs 3"] | None = None
 
     def step(self, commanded: Float[np.ndarray, "legs 3"], valid: ValidReadings, dt: float) -> None:
         """Take in what is measured in a tick.
@@ -124,14 +122,19 @@ class ServoMonitor:
             return
         self._since += dt
         if self._since >= _PERIOD:
-            self._look(commanded, valid, valid.joint_angles, self._since)
+            measured = np.array([(math.nan,) * 3 if leg is None else leg for leg in valid.joint_angles])
+            self._look(commanded, measured, valid, self._since)
             self._since = 0.0
 
     def _look(
-        self, commanded: Float[np.ndarray, "legs 3"], valid: ValidReadings, measured: _Measured, dt: float
+        self,
+        commanded: Float[np.ndarray, "legs 3"],
+        measured: Float[np.ndarray, "legs 3"],
+        valid: ValidReadings,
+        dt: float,
     ) -> None:
-        """Change the evidence against joints by their errors."""
-        last, self._last = self._last or measured, measured
+        """Change the evidence against joints by their errors; those of legs that are not measured are NaN."""
+        last, self._last = measured if self._last is None else self._last, measured
         for leg in self._found - self.failed.keys():
             # It is to be used again: what has told against it does not count any more.
             assert self._evidence is not None  # what it was found by
@@ -141,22 +144,20 @@ class ServoMonitor:
         if self._evidence is not None:
             self._evidence *= 0.5 ** (dt / _MEMORY)
         # No joint is further from all recent commands than from the last one.
-        joints = commanded.tolist()
-        off = _joints_off(measured, joints, _ERROR if self._evidence is None else _IDLE_ERROR)
-        if stuck is None and not off:
+        off = np.abs(measured - commanded)
+        if stuck is None and not (off > (_ERROR if self._evidence is None else _IDLE_ERROR)).any():
             return
         if self._evidence is None:
-            self._evidence, off = np.zeros((2, *commanded.shape)), _joints_off(measured, joints, _IDLE_ERROR)
-        for leg, joint, now in off:
+            self._evidence = np.zeros((2, *commanded.shape))
+        for leg, joint in np.argwhere(off > _IDLE_ERROR).tolist():
+            now, before, asked = (float(angles[leg, joint]) for angles in (measured, last, commanded))
             recent = [float(angles[leg, joint]) for _, angles in self._commands]
             over = now - max(recent)
             error = max(over, min(recent) - now)
             if error <= _IDLE_ERROR:
                 continue
-            before = last[leg]
-            towards = math.copysign(1.0, joints[leg][joint] - now)
-            moves = before is not None and (now - before[joint]) * towards > _MOVES * dt
-            torque = self._torque(valid.torques, leg, joint)
+            moves = (now - before) * math.copysign(1.0, asked - now) > _MOVES * dt
+            torque = self._torque(valid, leg, joint)
             idle = torque < _IDLE and not moves
             gives_way = joint == _FEMUR and over > _GIVES_WAY
             stalled = not idle and valid.contacts is not None and bool(valid.contacts[leg])
@@ -168,23 +169,22 @@ class ServoMonitor:
             self.failed.setdefault(leg, joint)
             self._found.add(leg)
 
-    def _torque(self, torques: _Measured | None, leg: int, joint: int) -> float:
+    def _torque(self, valid: ValidReadings, leg: int, joint: int) -> float:
         """Return the measured torque of a joint over the stall torque of its servo; NaN where it is unknown."""
-        of_leg = None if torques is None else torques[leg]
+        of_leg = None if valid.torques is None else valid.torques[leg]
         if of_leg is None:
             return math.nan
         return abs(of_leg[joint]) / float(self._stall_torque[leg, joint])
 
     def _stuck(
-        self, measured: _Measured, commanded: Float[np.ndarray, "legs 3"], dt: float
+        self, measured: Float[np.ndarray, "legs 3"], commanded: Float[np.ndarray, "legs 3"], dt: float
     ) -> Bool[np.ndarray, "legs 3"] | None:
         """Return which joints have not moved with their commands, at the end of a time in which any is so."""
         self._compared.append((measured, commanded))
         self._time += dt
         if self._time < _WITHIN:
             return None
-        moved = np.ptp([_array(angles) for angles, _ in self._compared], axis=0)
-        wanted = np.ptp([angles for _, angles in self._compared], axis=0)
+        moved, wanted = np.ptp(self._compared, axis=0)
         self._compared, self._time = [], 0.0
         with np.errstate(invalid="ignore"):
             stuck: np.ndarray = (wanted > _COMMANDED) & (moved < _SHARE * wanted)
@@ -199,18 +199,3 @@ def _weight(error: float, torque: float, *, idle: bool, gives_way: bool) -> floa
     unmeasured = _MOST_GIVING_WAY if gives_way else _MOST_WEIGHT
     most = _MOST_IDLE if idle else _MOST_PULLING if torque >= 0.0 else unmeasured
     return min((error / bound) ** 2, most)
-
-
-def _joints_off(measured: _Measured, commanded: Sequence[Sequence[float]], most: float) -> list[tuple[int, int, float]]:
-    """Return the joints that are measured and off by more than this: leg, joint and angle."""
-    return [
-        (leg, joint, now)
-        for leg, (found, angles) in enumerate(zip(measured, commanded, strict=True))
-        for joint, now in enumerate(found or ())
-        if abs(now - angles[joint]) > most
-    ]
-
-
-def _array(values: _Measured) -> Float[np.ndarray, "legs 3"]:
-    """Return what is measured of each leg; NaN where nothing is."""
-    return np.array([(np.nan,) * 3 if leg is None else leg for leg in values])
