@@ -14,9 +14,15 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from typing import TYPE_CHECKING
+
+import numpy as np
 
 from tarsus.errors import InputError
 from tarsus.gait.walk_setup import require_number
+
+if TYPE_CHECKING:
+    from jaxtyping import Float
 
 __all__ = ["Admittance", "AdmittanceFilter"]
 
@@ -123,18 +129,16 @@ class AdmittanceFilter:
 
     Attributes
     ----------
-    offsets : tuple of float
-        Upward offset of each foot [m].
-    speeds : tuple of float
-        Its rate [m/s].
+    offsets, speeds : array, shape (legs,)
+        Upward offset of each foot [m], and its rate [m/s].
     """
 
     def __init__(self, admittance: Admittance, legs: int) -> None:
         self.admittance = admittance
-        self.offsets = self.speeds = (0.0,) * legs
+        self.offsets = self.speeds = np.zeros(legs)
         self._tick = (0.0, admittance.transition(0.0))
 
-    def step(self, force_errors: Sequence[float | None], dt: float) -> tuple[float, ...]:
+    def step(self, force_errors: Sequence[float | None], dt: float) -> Float[np.ndarray, "legs"]:
         """Return the offsets after a tick with constant force errors.
 
         Parameters
@@ -146,15 +150,9 @@ class AdmittanceFilter:
         """
         if dt != self._tick[0]:
             self._tick = dt, self.admittance.transition(dt)
-        (xx, xv, vx, vv), max_force = self._tick[1], self.admittance.max_force
-        stiffness = self.admittance.stiffness
-        offsets, speeds = [], []
-        for x, v, force in zip(self.offsets, self.speeds, force_errors, strict=True):
-            target = 0.0
-            if force is not None and not math.isnan(force):
-                target = (max_force if force > max_force else max(force, -max_force)) / stiffness
-            distance = x - target
-            offsets.append(target + xx * distance + xv * v)
-            speeds.append(vx * distance + vv * v)
-        self.offsets, self.speeds = tuple(offsets), tuple(speeds)
+        (xx, xv, vx, vv), most = self._tick[1], self.admittance.max_force
+        forces = np.array(force_errors, dtype=float).reshape(self.offsets.shape)
+        target = np.where(np.isnan(forces), 0.0, forces.clip(-most, most)) / self.admittance.stiffness
+        distance, speeds = self.offsets - target, self.speeds
+        self.offsets, self.speeds = target + xx * distance + xv * speeds, vx * distance + vv * speeds
         return self.offsets

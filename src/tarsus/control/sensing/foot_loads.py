@@ -113,9 +113,9 @@ class FootLoads:
         if forces is None and valid.torques is not None and self._torques is not None:
             forces = self._torques.forces(angles.tolist(), valid.torques)
         if forces is None or not self._weight:
-            return np.array(self._filter.step((None,) * len(state.foot), dt))
+            return self._filter.step((None,) * len(state.foot), dt)
         places = [[foot.real, foot.imag, 0.0] for foot in (state.foot - state.foot.mean()).tolist()]
         stands = [on and leg not in out for leg, on in enumerate(state.down.tolist())]
         expected = zip(forces, balanced_forces(places, stands, [0.0, 0.0], self._weight), stands, strict=True)
         errors = [force[2] - share if force is not None and down else None for force, share, down in expected]
-        return np.array(self._filter.step(errors, dt))
+        return self._filter.step(errors, dt)
