@@ -34,8 +34,8 @@ def test_playback_equals_the_sequence(dt):
     assert player.done
     assert player.stopped
     assert player.stage == "raise body"
-    assert player.contacts.all()
-    assert player.body.position[2] == pytest.approx(0.2)
+    assert player.now.contacts.all()
+    assert player.now.body.position[2] == pytest.approx(0.2)
     assert not player.step(dt).flags.writeable
 
 

@@ -10,11 +10,10 @@ import numpy as np
 from tarsus.control.sequence.sequence import MotionSequence, SequenceSample
 from tarsus.control.sequence.stage import GRID
 from tarsus.gait.walk_setup import require_number
-from tarsus.kinematics.pose import Pose
 from tarsus.representation import represented
 
 if TYPE_CHECKING:
-    from jaxtyping import Bool, Float
+    from jaxtyping import Float
 
 __all__ = ["SequencePlayer"]
 
@@ -67,16 +66,6 @@ class SequencePlayer:
     def angles(self) -> Float[np.ndarray, "legs 3"]:
         """Current joint angles, shape (legs, 3) [rad]."""
         return self.now.angles
-
-    @property
-    def contacts(self) -> Bool[np.ndarray, "legs"]:
-        """Feet currently on the ground, shape (legs,)."""
-        return self.now.contacts
-
-    @property
-    def body(self) -> Pose:
-        """Current pose of B in G."""
-        return self.now.body
 
     @property
     def stage(self) -> str:
