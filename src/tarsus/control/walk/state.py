@@ -8,7 +8,7 @@ from __future__ import annotations
 import cmath
 import math
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any, NamedTuple, overload
+from typing import TYPE_CHECKING, NamedTuple, TypeVar
 
 import numpy as np
 
@@ -31,6 +31,8 @@ PHASE_TOLERANCE = 1e-9
 
 POSITION_TOLERANCE = 1e-6
 """A foot this close to its rest foothold is at it [m]."""
+
+_Places = TypeVar("_Places", complex, np.ndarray)
 
 
 class GaitState(NamedTuple):
@@ -147,11 +149,7 @@ class GaitState(NamedTuple):
         rotation = np.array(rotation_rows(roll, pitch, self.yaw + yaw))
         return Pose.unchecked(rotation, np.array([origin.real, origin.imag, self.elevation + z]))
 
-    @overload
-    def in_heading(self, places: complex) -> complex: ...
-    @overload
-    def in_heading(self, places: Complex[np.ndarray, "legs"]) -> Complex[np.ndarray, "legs"]: ...
-    def in_heading(self, places: Any) -> Any:
+    def in_heading(self, places: _Places) -> _Places:
         """Return places of G in the heading frame [m].
 
         Parameters
