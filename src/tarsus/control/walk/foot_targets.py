@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import cmath
+import math
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
@@ -61,6 +62,11 @@ class FootTargets:
     ----------
     robot : Robot
         A single robot.
+
+    Attributes
+    ----------
+    limitations : list of Limitation
+        Foot targets that are out of reach or below the ground, and feet that are to move too fast.
     """
 
     def __init__(self, robot: Robot) -> None:
@@ -68,9 +74,7 @@ class FootTargets:
         self._motions: dict[int, FootTargetMotion] = {}
         self._excluded: tuple[int, ...] = ()
         self._points: dict[int, Sequence[float]] = {}
-        self._fractions: dict[int, float] = {}
-        self._shares: dict[int, float] = {}
-        self._below_ground: list[int] = []
+        self.limitations: list[Limitation] = []
 
     def __bool__(self) -> bool:
         return bool(self._motions)
@@ -85,21 +89,6 @@ class FootTargets:
         """Whether a leg is returning to the gait."""
         return len(self._motions) > len(self._excluded)
 
-    @property
-    def limitations(self) -> list[Limitation]:
-        """Foot targets that are out of reach or below the ground, and feet that are to move too fast."""
-        kind, names = LimitationKind.FOOT_TARGET, self._robot.leg_names
-        causes = ("out of reach", self._fractions), (_FASTEST, self._shares)
-        return [
-            *(
-                Cause(cause, names[leg]).limitation(kind, asked=1.0, granted=share)
-                for cause, shares in causes
-                for leg, share in shares.items()
-                if share < 1
-            ),
-            *(Limitation(kind=kind, cause=_BELOW_GROUND, leg=names[leg]) for leg in self._below_ground),
-        ]
-
     def set_legs(self, excluded: tuple[int, ...], state: GaitState) -> None:
         """Set the legs that are taken out of the gait; a leg that returns stays in the air until its next step.
 
@@ -110,7 +99,7 @@ class FootTargets:
         """
         stopped = {leg: motion.stopped() for leg, motion in self._motions.items() if leg not in excluded}
         self._motions = stopped | {leg: self._motions.get(leg) or begin_foot_target(state, leg) for leg in excluded}
-        self._excluded, self._fractions, self._below_ground = excluded, {}, []
+        self._excluded, self.limitations = excluded, []
 
     def set_targets(
         self, command: Command, posture: Float[np.ndarray, "13"], sway: tuple[float, ...], dt: float
@@ -126,7 +115,7 @@ class FootTargets:
         dt : float
             Length of the tick [s].
         """
-        self._fractions, self._shares, self._below_ground = {}, {}, []
+        self.limitations = []
         if not (self._points or command.foot_targets or command.foot_velocities):
             return
         velocities = command.foot_velocities or {}
@@ -138,17 +127,26 @@ class FootTargets:
             start = motion.position.value
             if leg in velocities:
                 velocity = np.array(velocities[leg])
-                share = self._shares[leg] = min(GREATEST_SPEED / max(float(np.abs(velocity).max()), 1e-9), 1.0)
+                share = min(GREATEST_SPEED / max(float(np.abs(velocity).max()), 1e-9), 1.0)
+                if share < 1:
+                    self._note(leg, _FASTEST, asked=1.0, granted=share)
                 end = motion.target + share * velocity * dt
             elif leg in self._points:
                 end = np.array(self._points[leg])
                 if end[2] < 0:
-                    self._below_ground.append(leg)
+                    self._note(leg, _BELOW_GROUND)
             else:
                 continue
             end[2] = max(end[2], 0.0)
-            fraction = self._fractions[leg] = self._reachable(leg, end, postures)
+            fraction = self._reachable(leg, end, postures)
+            if fraction < 1:
+                self._note(leg, "out of reach", asked=1.0, granted=fraction)
             self._motions[leg] = motion._replace(target=start + fraction * (end - start))
+
+    def _note(self, leg: int, cause: str, *, asked: float = math.nan, granted: float = math.nan) -> None:
+        """Note why a foot does not follow what is commanded."""
+        why = Cause(cause, self._robot.leg_names[leg])
+        self.limitations.append(why.limitation(LimitationKind.FOOT_TARGET, asked=asked, granted=granted))
 
     def _reachable(self, leg: int, end: Float[np.ndarray, "3"], postures: list[Float[np.ndarray, "7"]]) -> float:
         """Return the fraction of a straight path to a point that a foot can follow in all of some postures."""
