@@ -10,18 +10,21 @@ import numpy as np
 from tarsus.control.command import Command
 from tarsus.control.limitation import Limitation, LimitationKind
 from tarsus.control.transition.executor import TransitionExecutor
-from tarsus.control.walk.foot_target_motion import best_body_shift
 from tarsus.control.walk.foot_targets import excluded_legs
 from tarsus.gait.stance.stability import support_sets
 from tarsus.kinematics.mass import centre_of_mass
+from tarsus.kinematics.polygon import hull_margin
 from tarsus.robot.robot import Robot
 
 if TYPE_CHECKING:
-    from jaxtyping import Float
+    from jaxtyping import Bool, Complex, Float
 
 __all__ = ["CommandIntake"]
 
 _NO_MOTION = (0.0,) * 6
+# Shifts of the body that are tried when legs leave the gait [m].
+_STEPS = np.arange(-4, 5) * 0.01
+_SHIFTS = (_STEPS[:, None] + 1j * _STEPS).ravel()
 _SHIFTED = "x and y are those over the feet that stay while a leg is out of the gait"
 
 
@@ -84,6 +87,18 @@ class CommandIntake:
             (x, y, _), sets = centre_of_mass(self._robot, angles).tolist(), support_sets(requested.gait, excluded)
             centre = cmath.exp(1j * requested.body[5]) * complex(x, y)
             # Of a body in the middle of its feet, from where all directions cost as much reach.
-            best = best_body_shift(self._transitions.footholds.new_rest, centre, sets)
+            best = _best_shift(self._transitions.footholds.new_rest, centre, sets)
             self._shifted_for, self._shift = shifts_for, best - complex(*requested.body[:2])
         return (self._shift.real, self._shift.imag, 0.0, 0.0, 0.0, 0.0)
+
+
+def _best_shift(rest: Complex[np.ndarray, "legs"], centre: complex, sets: Bool[np.ndarray, "n legs"]) -> complex:
+    """Return the shift of the centre of mass with the greatest stability margin; of similar ones the smallest [m].
+
+    `rest` are the rest footholds [m], `sets` the feet that are in stance together.
+    """
+    feet = np.stack([rest.real, rest.imag], axis=-1)
+    centres = np.array([[(centre + shift).real, (centre + shift).imag] for shift in _SHIFTS])
+    margins = hull_margin(feet, sets, centres[:, None, :]).min(axis=-1)
+    # A shift costs reach, which is weighed against the margin.
+    return complex(_SHIFTS[int(np.argmax(margins - np.abs(_SHIFTS) / 4))])

@@ -8,21 +8,17 @@ import numpy as np
 
 from tarsus.control.filters import CriticallyDamped
 from tarsus.control.walk.state import GaitState
-from tarsus.kinematics.polygon import hull_margin
 
 if TYPE_CHECKING:
-    from jaxtyping import Bool, Complex, Float
+    from jaxtyping import Float
 
-__all__ = ["GREATEST_SPEED", "FootTargetMotion", "begin_foot_target", "best_body_shift"]
+__all__ = ["GREATEST_SPEED", "FootTargetMotion", "begin_foot_target"]
 
 GREATEST_SPEED = 0.12
 """Greatest speed with which a foot follows its target [m/s]."""
 
 # Greatest bandwidth with which it does [rad/s].
 _BANDWIDTH = 5.0
-# Shifts of the body that are tried when legs leave the gait [m].
-_STEPS = np.arange(-4, 5) * 0.01
-_SHIFTS = (_STEPS[:, None] + 1j * _STEPS).ravel()
 
 
 class FootTargetMotion(NamedTuple):
@@ -73,27 +69,3 @@ def begin_foot_target(state: GaitState, leg: int) -> FootTargetMotion:
     relative = -(complex(vx, vy) + 1j * wz * in_heading)
     here = np.array([in_heading.real, in_heading.imag, float(state.ground_height[leg]) - state.elevation])
     return FootTargetMotion(CriticallyDamped(here, np.array([relative.real, relative.imag, -state.climb])), here)
-
-
-def best_body_shift(rest: Complex[np.ndarray, "legs"], centre: complex, sets: Bool[np.ndarray, "n legs"]) -> complex:
-    """Return the shift of the centre of mass with the greatest stability margin.
-
-    Parameters
-    ----------
-    rest : complex array, shape (legs,)
-        Rest footholds [m].
-    centre : complex
-        Projection of the centre of mass [m].
-    sets : array of bool, shape (n, legs)
-        Feet that are in stance together.
-
-    Returns
-    -------
-    complex
-        The best of the shifts that are tried; of similar ones the smallest [m].
-    """
-    feet = np.stack([rest.real, rest.imag], axis=-1)
-    centres = np.array([[(centre + shift).real, (centre + shift).imag] for shift in _SHIFTS])
-    margins = hull_margin(feet, sets, centres[:, None, :]).min(axis=-1)
-    # A shift costs reach, which is weighed against the margin.
-    return complex(_SHIFTS[int(np.argmax(margins - np.abs(_SHIFTS) / 4))])
