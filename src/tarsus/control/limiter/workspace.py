@@ -40,7 +40,7 @@ class WorkspaceLimiter:
     ) -> None:
         self._names, self._transitions, self._adapted = names, transitions, adapted
         self._key: tuple[Any, ...] = ()
-        self._found: tuple[float, Limitation | None] = (1.0, None)
+        self._found: tuple[float, Limitation | None] = 1.0, None
 
     def limit(self, request: TwistRequest, grant: TwistGrant) -> TwistGrant:
         """Return the grant for at most the fraction that is sustainable."""
@@ -51,18 +51,18 @@ class WorkspaceLimiter:
         most = max(grant.fraction, 1.0)
         key = (request.twist, most, frequency, limits, pending, longest, speed)
         if key != self._key:
-            self._key, self._found = key, self._largest(request.twist, frequency, most)
+            self._key, (fraction, cause) = key, self._largest(request.twist, frequency, most)
             walks = any(request.twist)
             fastest, longest = (top_speed(transitions, request.twist), longest) if walks else (1.0, 1.0)
             # Cycles get no longer than strokes at that speed allow.
             transitions.lengthened = min(max(_SPARE * max(fastest, 1 / speed), 1.0), longest)
-            if speed < 1 and speed * fastest < self._found[0]:
-                granted = speed * fastest
-                slow = Limitation(kind=LimitationKind.TWIST, cause=_ROUGH, asked=1.0, granted=granted)
-                self._found = granted, slow if granted < 1 else None
+            if speed < 1 and speed * fastest < fraction:
+                fraction, cause = speed * fastest, Cause(_ROUGH)
+            short = cause.limitation(LimitationKind.TWIST, asked=1.0, granted=fraction) if fraction < 1 else None
+            self._found = fraction, short
         return grant.at_most(*self._found)
 
-    def _largest(self, twist: tuple[float, ...], frequency: float, most: float) -> tuple[float, Limitation | None]:
+    def _largest(self, twist: tuple[float, ...], frequency: float, most: float) -> tuple[float, Cause]:
         """Return the largest sustainable fraction, up to a greatest one, and what limits it."""
         transitions, pending = self._transitions, self._transitions.pending
         stances = [(transitions.current, transitions.footholds.limits)]
@@ -75,9 +75,7 @@ class WorkspaceLimiter:
             longest, which = _longest_stance(limits, twist, duty_factor)
             if longest < fraction * stance_time:
                 fraction, leg = longest / stance_time, which
-        cause = Cause(_CAUSE, self._names[leg])
-        short = cause.limitation(LimitationKind.TWIST, asked=1.0, granted=fraction) if fraction < 1 else None
-        return fraction, short
+        return fraction, Cause(_CAUSE, self._names[leg])
 
 
 def top_speed(transitions: TransitionExecutor, direction: Sequence[float]) -> float:
