@@ -9,8 +9,7 @@ import numpy as np
 
 from tarsus.control.limitation import Limitation, LimitationKind
 from tarsus.control.readings import CHANNELS, SensorReadings, ValidReadings
-from tarsus.control.sensing.body_channels import AngularRateChannel, AttitudeChannel
-from tarsus.control.sensing.channel import Channel
+from tarsus.control.sensing.channel import AngularRateChannel, AttitudeChannel, Channel
 from tarsus.control.sensing.leg_channels import ContactChannel, JointAngleChannel, VectorChannel
 from tarsus.control.sensing.plain_values import as_number
 from tarsus.gait.ground_heights import GroundHeights
