@@ -3,30 +3,36 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from contextlib import suppress
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from tarsus.control.startup.builder import BodyTarget, SequenceBuilder
-from tarsus.control.startup.foothold_change import change_footholds
 from tarsus.control.startup.foothold_stations import FootholdStation, foothold_stations
-from tarsus.errors import UnreachableError
+from tarsus.errors import TarsusError, UnreachableError
+from tarsus.gait.branch import branches
 from tarsus.kinematics.inverse import inverse_kinematics
 from tarsus.kinematics.pose import Pose
 from tarsus.kinematics.stance import default_stance, footholds_straight_out
 from tarsus.kinematics.underside import belly_depth
 
 if TYPE_CHECKING:
-    from jaxtyping import Float
+    from jaxtyping import Bool, Float
 
-__all__ = ["lower_body", "raise_body"]
+__all__ = ["change_footholds", "lower_body", "raise_body"]
 
 
 # Spacing of the body heights that are tried for the advice of an error message [m].
 _BODY_HEIGHT_STEP = 0.005
 # Tolerance of the joint angles of the final stance, which are computed in two ways [rad].
 _ANGLE_TOLERANCE = 1e-6
+# Smaller differences of joint angles are ignored [rad]: less than a nanometre at the foot.
+_SAME = 1e-9
+# Feet that stand while others are moved, at least.
+_MIN_STANCE_FEET = 3
 
 
 def raise_body(
@@ -129,3 +135,74 @@ def _at_height(builder: SequenceBuilder, height: float) -> SequenceBuilder:
     name = "raise body" if height > builder.height else "lower body"
     target = BodyTarget(Pose(builder.body.rotation, np.array([x, y, height])), np.zeros(3), belly=False)
     return builder.move_body(name, target, builder.contacts)
+
+
+def change_footholds(builder: SequenceBuilder, angles: Float[np.ndarray, "legs 3"]) -> SequenceBuilder:
+    """Move all legs to a new stance with the body stationary.
+
+    Feet in the air are placed first. Then the tripods are moved, every second leg of the ring, and single legs where a
+    tripod cannot be lifted.
+
+    Parameters
+    ----------
+    builder : SequenceBuilder
+        The robot in its current state.
+    angles : array, shape (legs, 3)
+        Joint angles of the new stance, all feet on the ground [rad].
+
+    Returns
+    -------
+    SequenceBuilder
+        The robot in the new stance.
+
+    Raises
+    ------
+    TarsusError
+        If a foot cannot be moved.
+    """
+    remaining = np.abs(angles - builder.angles).max(-1) > _SAME
+    if (remaining & ~builder.contacts).any():
+        # These legs bear no load, so the support of the body does not change.
+        builder = _move(builder, remaining & ~builder.contacts, angles, margin=0.0)
+        remaining &= np.abs(angles - builder.angles).max(-1) > _SAME
+    while remaining.any():
+        builder, group = _move_first_group(builder, remaining, angles)
+        remaining = remaining & ~group
+    return builder
+
+
+def _move_first_group(
+    builder: SequenceBuilder, remaining: Bool[np.ndarray, "legs"], angles: Float[np.ndarray, "legs 3"]
+) -> tuple[SequenceBuilder, Bool[np.ndarray, "legs"]]:
+    """Move the first group of legs that can be lifted, and return it too."""
+    failure = TarsusError(
+        f"only {int(builder.contacts.sum())} feet are on the ground; lifting one of them requires at least "
+        f"{_MIN_STANCE_FEET + 1}"
+    )
+    for group in _groups(builder, remaining):
+        try:
+            return _move(builder, group, angles, margin=builder.margin), group
+        except TarsusError as error:
+            failure = error
+    raise failure
+
+
+def _groups(builder: SequenceBuilder, remaining: Bool[np.ndarray, "legs"]) -> Iterator[Bool[np.ndarray, "..."]]:
+    """Yield the groups to try, tripods before single legs, that leave three feet on the ground."""
+    legs = np.arange(remaining.size)
+    groups = [remaining & (legs % 2 == parity) for parity in (0, 1)]
+    groups += [legs == leg for leg in np.flatnonzero(remaining)]
+    return (group for group in groups if group.any() and (builder.contacts & ~group).sum() >= _MIN_STANCE_FEET)
+
+
+def _move(
+    builder: SequenceBuilder, legs: Bool[np.ndarray, "legs"], angles: Float[np.ndarray, "legs 3"], *, margin: float
+) -> SequenceBuilder:
+    """Move legs by a swing of their feet if possible, else along paths in joint space."""
+    codes = [builder.robot.leg_codes[leg] for leg in np.flatnonzero(legs)]
+    name = f"place {' '.join(codes)}"
+    # A swing keeps the way in which the knee bends.
+    if (branches(builder.robot, angles) == branches(builder.robot, builder.angles))[legs].all():
+        with suppress(TarsusError):
+            return builder.swing(name, legs, replace(builder, angles=angles).feet, margin=margin)
+    return builder.move_legs(name, np.where(legs[:, None], angles, builder.angles), landed=True, margin=margin)
