@@ -10,9 +10,8 @@ import numpy as np
 
 from tarsus.arrays import Array
 from tarsus.control.safety.bounds import GuardBounds
-from tarsus.control.safety.clock import GuardClock
 from tarsus.control.safety.feet_monitor import FeetMonitor
-from tarsus.control.safety.inputs import read_angles, read_contacts, read_time_step, read_up
+from tarsus.control.safety.inputs import GuardClock, read_angles, read_contacts, read_up
 from tarsus.control.safety.intervention_log import InterventionLog
 from tarsus.control.safety.interventions import GuardOutput, GuardState, Intervention, InterventionKind, Violation
 from tarsus.control.safety.joint_monitor import JointMonitor
@@ -161,7 +160,7 @@ class Guard:
         GuardOutput
             The joint angles to send, and the violations of the command.
         """
-        step, violations = self._clock.advance(read_time_step(dt))
+        step, violations = self._clock.advance(dt)
         parsed = read_angles(angles, self._robot.legs)
         command = None if isinstance(parsed, Violation) else parsed
         if isinstance(parsed, Violation):

@@ -1,4 +1,4 @@
-"""Parsing of the guard's inputs: each function returns plain numbers or a violation and never raises."""
+"""Parsing of the guard's inputs: each returns plain numbers or violations and never raises."""
 
 from __future__ import annotations
 
@@ -7,13 +7,16 @@ from typing import Any
 
 import numpy as np
 
+from tarsus.control.safety.bounds import GuardBounds
 from tarsus.control.safety.interventions import InterventionKind, Violation
 from tarsus.control.safety.support_geometry import Point
 from tarsus.kinematics.pose import Pose
 
-__all__ = ["read_angles", "read_contacts", "read_time_step", "read_up"]
+__all__ = ["GuardClock", "read_angles", "read_contacts", "read_up"]
 
 _NUMERIC_KINDS = "fiu"
+# A longer time step is invalid rather than a gap [s].
+_LONGEST_GAP = 3600.0
 
 
 def read_angles(angles: Any, legs: int) -> list[float] | Violation:
@@ -42,22 +45,6 @@ def read_angles(angles: Any, legs: int) -> list[float] | Violation:
     if index is None:
         return values
     return Violation(InterventionKind.NOT_FINITE, index // 3, index % 3, values[index], math.nan)
-
-
-def read_time_step(dt: Any) -> float:
-    """Return the time step as a float, NaN if it is not a number.
-
-    Parameters
-    ----------
-    dt : any
-        Time step as given [s].
-    """
-    if type(dt) is float:
-        return dt
-    try:
-        return math.nan if isinstance(dt, str | bytes | bytearray) else float(dt)
-    except Exception:
-        return math.nan
 
 
 def read_contacts(contacts: Any, legs: int) -> list[bool] | Violation:
@@ -93,3 +80,52 @@ def read_up(body: Any) -> Point | Violation:
         return x, y, z
     size = float(body.rotation.size) if isinstance(body, Pose) else math.nan
     return Violation(InterventionKind.BODY_POSE, -1, -1, size, 9.0)
+
+
+class GuardClock:
+    """Sums the valid time steps; steps that are too short accumulate until they are long enough.
+
+    Attributes
+    ----------
+    time : float
+        Sum of all valid time steps [s].
+
+    Parameters
+    ----------
+    bounds : GuardBounds
+        Bounds of the time step.
+    """
+
+    def __init__(self, bounds: GuardBounds) -> None:
+        self._shortest, self._longest = bounds.min_time_step, bounds.max_time_step
+        self._pending = self.time = 0.0
+
+    def advance(self, dt: Any) -> tuple[float, list[Violation]]:
+        """Advance the clock; return the time step to use, 0 for none, and the violations.
+
+        Parameters
+        ----------
+        dt : any
+            Time step as given [s].
+        """
+        dt = _number(dt)
+        if 0 < dt <= _LONGEST_GAP:
+            self._pending += dt
+        step = self._pending if self._pending >= self._shortest else 0.0
+        if step > 0:
+            self.time, self._pending = self.time + step, 0.0
+        if self._shortest <= dt <= self._longest:
+            return step, []
+        if self._longest < dt <= _LONGEST_GAP:
+            return step, [Violation(InterventionKind.TIME_GAP, -1, -1, dt, self._longest)]
+        return step, [Violation(InterventionKind.TIME_STEP, -1, -1, dt, self._shortest)]
+
+
+def _number(dt: Any) -> float:
+    """Return a time step as a float, NaN if it is not a number."""
+    if type(dt) is float:
+        return dt
+    try:
+        return math.nan if isinstance(dt, str | bytes | bytearray) else float(dt)
+    except Exception:
+        return math.nan
