@@ -7,12 +7,12 @@ from gait_robots import PRESETS
 from sample_stances import feet_at, pose_of, posture_of, setup_of
 from tarsus.control.incremental import complete
 from tarsus.control.transition.feasible_fraction import (
-    StanceTarget,
     balanced_fraction,
     first_increment,
     reach_cause,
     reachable_fraction,
 )
+from tarsus.control.transition.stance_transition import StanceTarget
 from tarsus.control.workspace.foot_workspace import foot_workspace, rest_margin
 from tarsus.gait.foot_polygons import NORMALS
 from tarsus.gait.gait import Gait

@@ -13,9 +13,9 @@ from sample_stances import feet_at, pose_of, posture_of, setup_of
 from sample_walks import WAVE_OF_FOUR
 from tarsus.control.incremental import complete
 from tarsus.control.limitation import Cause, Limitation, LimitationKind
-from tarsus.control.transition.feasible_fraction import TIPPING, StanceTarget
+from tarsus.control.transition.feasible_fraction import TIPPING
 from tarsus.control.transition.planner import TransitionPlanner
-from tarsus.control.transition.stance_transition import StanceTransition, WalkParameters
+from tarsus.control.transition.stance_transition import StanceTarget, StanceTransition, WalkParameters
 from tarsus.errors import UnreachableError
 from tarsus.gait.gait import Gait
 from tarsus.gait.stance.stance_geometry import SWING_HEIGHT, rotation_rows, stance_geometry_of

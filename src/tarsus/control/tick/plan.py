@@ -9,8 +9,7 @@ from tarsus.control.incremental import Incremental
 from tarsus.control.limitation import Cause
 from tarsus.control.tick.components import WalkComponents
 from tarsus.control.tick_state import TickState
-from tarsus.control.transition.feasible_fraction import StanceTarget
-from tarsus.control.transition.stance_transition import StanceTransition, WalkParameters
+from tarsus.control.transition.stance_transition import StanceTarget, StanceTransition, WalkParameters
 from tarsus.control.walk.state import GaitState
 from tarsus.gait.stance.stability import support_sets
 from tarsus.kinematics.stability import stability_margin

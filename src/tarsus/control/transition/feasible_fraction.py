@@ -3,27 +3,22 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from tarsus.control.incremental import Incremental
 from tarsus.control.limitation import Cause
+from tarsus.control.transition.stance_transition import StanceTarget
 from tarsus.control.workspace.foot_workspace import rest_margin
 from tarsus.gait.stance.stability import StabilityCheck
-from tarsus.gait.stance.stance_geometry import (
-    SWING_HEIGHT,
-    StanceGeometry,
-    joint_margin,
-    rotation_rows,
-    stance_geometry_of,
-)
+from tarsus.gait.stance.stance_geometry import SWING_HEIGHT, StanceGeometry, joint_margin, rotation_rows
 from tarsus.robot.robot import Robot
 
 if TYPE_CHECKING:
-    from jaxtyping import Complex, Float
+    from jaxtyping import Float
 
-__all__ = ["TIPPING", "StanceTarget", "balanced_fraction", "first_increment", "reach_cause", "reachable_fraction"]
+__all__ = ["TIPPING", "balanced_fraction", "first_increment", "reach_cause", "reachable_fraction"]
 
 TIPPING = Cause("the robot would tip over")
 # The whole path is sampled at so many points; the interval that fails is then halved: to 1/2048 of the path.
@@ -36,36 +31,6 @@ _LONGEST_STEP, _SHORTER = 0.03, np.append(np.arange(16, 0, -1) / 16, (1 / 32, 1 
 _SAME = 1e-9
 # Additional stability margin, as a fraction of the greatest distance between neighbouring feet.
 _STEP_MARGIN = 0.03
-
-
-class StanceTarget(NamedTuple):
-    """A posture and the rest footholds under it.
-
-    Attributes
-    ----------
-    posture : array, shape (7,)
-        The posture.
-    rest : complex array, shape (legs,)
-        The rest footholds in the heading frame [m].
-    """
-
-    posture: Float[np.ndarray, "7"]
-    rest: Complex[np.ndarray, "legs"]
-
-    def towards(self, other: StanceTarget, fraction: float) -> StanceTarget:
-        """Return the stance at a fraction of the straight path to another.
-
-        Parameters
-        ----------
-        other, fraction : StanceTarget, float
-            The end of the path; 0 for this stance, 1 for the other.
-        """
-        return StanceTarget(*(here + fraction * (there - here) for here, there in zip(self, other, strict=True)))
-
-    @property
-    def stand(self) -> StanceGeometry:
-        """The body and the feet at rest."""
-        return stance_geometry_of(self.posture, self.rest)
 
 
 def reachable_fraction(robot: Robot, start: StanceTarget, end: StanceTarget) -> Incremental[tuple[float, Cause | None]]:

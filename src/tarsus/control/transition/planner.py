@@ -10,15 +10,13 @@ from tarsus.control.incremental import Incremental, complete
 from tarsus.control.limitation import Cause, Limitation, LimitationKind
 from tarsus.control.transition.feasible_fraction import (
     TIPPING,
-    StanceTarget,
     balanced_fraction,
     first_increment,
     reach_cause,
     reachable_fraction,
 )
 from tarsus.control.transition.shortfalls import UNREACHABLE, stance_limitations
-from tarsus.control.transition.stance_transition import StanceTransition, WalkParameters
-from tarsus.control.transition.target_stance import target_stance
+from tarsus.control.transition.stance_transition import StanceTarget, StanceTransition, WalkParameters, target_stance
 from tarsus.control.workspace.cycle_time import CycleTiming, cycle_timing
 from tarsus.control.workspace.stance_limits import shifted_limits, velocity_limits
 from tarsus.errors import InputError, UnreachableError
