@@ -18,10 +18,10 @@ from tarsus.control.terrain.foot_contacts import FootContacts
 from tarsus.control.terrain.reach import Reach
 from tarsus.control.terrain.roughness import Roughness
 from tarsus.control.terrain.support import Footing, Support, Tipping, along_gravity, holds
-from tarsus.control.tick_state import TickState
 from tarsus.control.walk.felt_feet import FeltFoot, FeltInputs, GroundUnder, travel_share
 from tarsus.control.walk.vertical_motion import _searching, _swinging
 from tarsus.control.walk_controller import WalkController
+from tarsus.control.walk_state import TickState
 from tarsus.gait.foot_plane import FootPlane, fitted_plane
 from tarsus.gait.stance.reachable_heights import reachable_heights
 from tarsus.simulation import SensorSuite, SimulatedPlant

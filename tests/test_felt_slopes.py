@@ -15,9 +15,8 @@ from tarsus.control.robot_controller import RobotController
 from tarsus.control.terrain.reach import Reach
 from tarsus.control.terrain.roughness import GroundAdaptation
 from tarsus.control.terrain.slope_limit import SlopeLimit
-from tarsus.control.tick_state import TickState
 from tarsus.control.walk_controller import WalkController
-from tarsus.control.walk_state import WalkState
+from tarsus.control.walk_state import TickState, WalkState
 from tarsus.errors import InputError
 from tarsus.gait.foot_plane import FootPlane
 from tarsus.gait.stance.reachable_heights import reachable_share

@@ -24,14 +24,13 @@ from tarsus.control.tick.estimate import estimated
 from tarsus.control.tick.integrate import integrated
 from tarsus.control.tick.limit import limited, twist_limiters
 from tarsus.control.tick.plan import planned
-from tarsus.control.tick_state import TickState
 from tarsus.control.transition.executor import TransitionExecutor
 from tarsus.control.transition.planner import TransitionPlanner
 from tarsus.control.walk.foot_targets import FootTargets
 from tarsus.control.walk.joint_solver import JointSolver
 from tarsus.control.walk.state import GaitState
 from tarsus.control.walk.time_scaling import TimeScaling
-from tarsus.control.walk_state import WalkState
+from tarsus.control.walk_state import TickState, WalkState
 from tarsus.gait.gait import Gait
 from tarsus.gait.walk_setup import WalkSetup, require_number
 from tarsus.kinematics.pose import Pose

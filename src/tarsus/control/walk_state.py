@@ -1,11 +1,20 @@
-"""The states of walking and the transitions between them."""
+"""The states of walking and the transitions between them; what passes from stage to stage of a tick."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 from enum import StrEnum
+from typing import TYPE_CHECKING, NamedTuple
 
-__all__ = ["WALK_STATE_TRANSITIONS", "WalkState", "next_walk_state"]
+import numpy as np
+
+from tarsus.control.limitation import Limitation
+from tarsus.control.walk.state import GaitState
+
+if TYPE_CHECKING:
+    from jaxtyping import Float
+
+__all__ = ["WALK_STATE_TRANSITIONS", "TickState", "WalkState", "next_walk_state"]
 
 
 class WalkState(StrEnum):
@@ -61,3 +70,29 @@ def next_walk_state(
     allowed = following is state or following in WALK_STATE_TRANSITIONS[state]
     # From any other state, a robot at rest passes through STOPPING.
     return following if allowed else WalkState.STOPPING
+
+
+class TickState(NamedTuple):
+    """Gait state, twist and walk state; what else lasts from tick to tick is in the `WalkComponents`.
+
+    Attributes
+    ----------
+    gait : GaitState
+        Body and feet.
+    twist : array, shape (3,)
+        The twist to follow: forward, left [m/s], turning [rad/s].
+    walk_state : WalkState
+        What the controller does.
+    limitations : tuple of Limitation
+        Why the commanded twist is not followed in full.
+    """
+
+    gait: GaitState
+    twist: Float[np.ndarray, "3"]
+    walk_state: WalkState = WalkState.STANDING
+    limitations: tuple[Limitation, ...] = ()
+
+    @property
+    def standing(self) -> bool:
+        """Whether the robot stands."""
+        return self.walk_state is WalkState.STANDING

@@ -18,9 +18,9 @@ from tarsus.control.terrain.reach import Reach
 from tarsus.control.terrain.roughness import GroundAdaptation, Roughness
 from tarsus.control.terrain.slope_limit import SlopeLimit
 from tarsus.control.terrain.support import Footing, off_commanded
-from tarsus.control.tick_state import TickState
 from tarsus.control.transition.executor import TransitionExecutor
 from tarsus.control.walk.state import PHASE_TOLERANCE, GaitState
+from tarsus.control.walk_state import TickState
 from tarsus.gait.stance.reachable_heights import reachable_share
 from tarsus.gait.stance.stance_geometry import SWING_HEIGHT
 from tarsus.robot.robot import Robot

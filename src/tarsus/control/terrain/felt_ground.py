@@ -18,12 +18,12 @@ from tarsus.control.terrain.foot_contacts import Search
 from tarsus.control.terrain.ground_contact import met_ground, not_sunk, put_down
 from tarsus.control.terrain.missing_ground import SLOW, MissingGround
 from tarsus.control.terrain.support import Footing, Support, Tipping, along_gravity, off_commanded, sunk_at
-from tarsus.control.tick_state import TickState
 from tarsus.control.transition.executor import TransitionExecutor
 from tarsus.control.transition.foothold_transfer import FootholdTransfer
 from tarsus.control.walk.felt_feet import FeltFoot, FeltInputs, GroundUnder, travel_share
 from tarsus.control.walk.state import GaitState
 from tarsus.control.walk.step_timing import NextLift, StepTiming
+from tarsus.control.walk_state import TickState
 from tarsus.gait.foot_plane import FootPlane
 from tarsus.gait.stance.stance_geometry import SWING_HEIGHT
 from tarsus.kinematics.mass import centre_of_mass

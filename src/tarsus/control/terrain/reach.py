@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from tarsus.control.tick_state import TickState
+from tarsus.control.walk_state import TickState
 from tarsus.gait.foot_plane import FootPlane
 from tarsus.gait.stance.reachable_heights import STROKE_PLACES, reachable_heights
 from tarsus.gait.stance.stance_geometry import SWING_HEIGHT

@@ -6,7 +6,7 @@ import numpy as np
 
 from tarsus.control.readings import SensorReadings
 from tarsus.control.tick.components import WalkComponents
-from tarsus.control.tick_state import TickState
+from tarsus.control.walk_state import TickState
 
 __all__ = ["estimated"]
 

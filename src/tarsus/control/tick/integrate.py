@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 from tarsus.control.tick.components import WalkComponents
-from tarsus.control.tick_state import TickState
 from tarsus.control.walk.state import GaitState, StepInputs
 from tarsus.control.walk.stepper import advance
 from tarsus.control.walk.vertical_motion import moved_vertically
-from tarsus.control.walk_state import next_walk_state
+from tarsus.control.walk_state import TickState, next_walk_state
 
 __all__ = ["integrated"]
 

@@ -11,8 +11,7 @@ from tarsus.control.limiter.protocol import TwistLimiter, TwistRequest, granted_
 from tarsus.control.limiter.reference_governor import GovernorLimiter
 from tarsus.control.limiter.workspace import WorkspaceLimiter
 from tarsus.control.tick.components import WalkComponents
-from tarsus.control.tick_state import TickState
-from tarsus.control.walk_state import next_walk_state
+from tarsus.control.walk_state import TickState, next_walk_state
 
 __all__ = ["limited", "twist_limiters"]
 

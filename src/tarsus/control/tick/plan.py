@@ -8,9 +8,9 @@ from tarsus.control.command import Command
 from tarsus.control.incremental import Incremental
 from tarsus.control.limitation import Cause
 from tarsus.control.tick.components import WalkComponents
-from tarsus.control.tick_state import TickState
 from tarsus.control.transition.stance_transition import StanceTarget, StanceTransition, WalkParameters
 from tarsus.control.walk.state import GaitState
+from tarsus.control.walk_state import TickState
 from tarsus.gait.stance.stability import support_sets
 from tarsus.kinematics.stability import stability_margin
 

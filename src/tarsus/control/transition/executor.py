@@ -8,7 +8,6 @@ import numpy as np
 
 from tarsus.control.limitation import Cause, Limitation, LimitationKind
 from tarsus.control.pose.pose_controller import PoseController
-from tarsus.control.tick_state import TickState
 from tarsus.control.transition.foothold_transfer import FootholdTransfer
 from tarsus.control.transition.scheduler import PlanTransition, TransitionScheduler
 from tarsus.control.transition.stance_transition import NextGait, StanceTransition
@@ -18,6 +17,7 @@ from tarsus.control.walk.reference_governor import FootPrediction, lift_delays, 
 from tarsus.control.walk.state import POSITION_TOLERANCE, GaitState
 from tarsus.control.walk.step_timing import StepTiming
 from tarsus.control.walk.stepper import stance_tolerance
+from tarsus.control.walk_state import TickState
 from tarsus.gait.stance.stance_geometry import sway_fraction
 
 if TYPE_CHECKING:
