@@ -15,7 +15,7 @@ from gait_robots import PRESETS, ROBOTS_AND_GAITS, preset, ring
 from sample_guard import ALL_STANCE, INVALID_ANGLES, NAN, TICK, check_bounds, run, standing, walk
 from sample_robots import random_hexapod
 from tarsus.control.safety import Guard, GuardBounds, GuardState, InterventionKind
-from tarsus.control.safety.leg_model import LegModel
+from tarsus.control.safety.scalar_geometry import LegModel
 from tarsus.kinematics.leg import forward_kinematics
 from tarsus.kinematics.mass import centre_of_mass
 from tarsus.kinematics.pose import Pose

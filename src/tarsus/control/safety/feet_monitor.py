@@ -7,8 +7,7 @@ from itertools import combinations
 
 from tarsus.control.safety.bounds import GuardBounds
 from tarsus.control.safety.interventions import InterventionKind, Violation
-from tarsus.control.safety.leg_model import LegModel
-from tarsus.control.safety.support_geometry import Point, plane_normal, polygon_margin, project
+from tarsus.control.safety.scalar_geometry import LegModel, Point, plane_normal, polygon_margin, project
 from tarsus.robot.robot import Robot
 
 __all__ = ["FeetMonitor"]

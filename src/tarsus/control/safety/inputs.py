@@ -9,7 +9,7 @@ import numpy as np
 
 from tarsus.control.safety.bounds import GuardBounds
 from tarsus.control.safety.interventions import InterventionKind, Violation
-from tarsus.control.safety.support_geometry import Point
+from tarsus.control.safety.scalar_geometry import Point
 from tarsus.kinematics.pose import Pose
 
 __all__ = ["GuardClock", "read_angles", "read_contacts", "read_up"]

@@ -9,7 +9,7 @@ import numpy as np
 
 from tarsus.control.safety.bounds import GuardBounds
 from tarsus.control.safety.joint_monitor import JointMonitor
-from tarsus.control.safety.support_geometry import Point
+from tarsus.control.safety.scalar_geometry import Point
 from tarsus.kinematics.leg import forward_kinematics, leg_jacobian
 from tarsus.kinematics.rest import CORNERS
 from tarsus.robot.robot import Robot
