@@ -30,21 +30,16 @@ class Channel:
     ----------
     names : sequence of str
         Names of the parts in messages.
+
+    Attributes
+    ----------
+    now : float
+        The time [s].
     """
 
     def __init__(self, names: Sequence[str]) -> None:
-        # Consecutive plausible readings of each part, at most `SETTLED`; the time [s].
-        self._names, self._plausible, self._now = names, [SETTLED] * len(names), 0.0
-
-    def elapse(self, dt: float) -> None:
-        """Count the time.
-
-        Parameters
-        ----------
-        dt : float
-            Time since the last call [s].
-        """
-        self._now += dt
+        # Consecutive plausible readings of each part, at most `SETTLED`.
+        self._names, self._plausible, self.now = names, [SETTLED] * len(names), 0.0
 
     def reset(self) -> None:
         """Reject every part until it has been plausible `SETTLED` times in a row."""
@@ -90,8 +85,8 @@ class AttitudeChannel(Channel):
         roll, pitch = as_number(parts[0]), as_number(parts[1])
         if not (-_MOST_TILT <= roll <= _MOST_TILT and -_MOST_TILT <= pitch <= _MOST_TILT):
             return _BEYOND if roll - roll == 0.0 == pitch - pitch else "not finite numbers"
-        before, change = self._last, _MOST_TURN * (self._now - self._read) + _NOISE
-        self._last, self._read = (roll, pitch), self._now
+        before, change = self._last, _MOST_TURN * (self.now - self._read) + _NOISE
+        self._last, self._read = (roll, pitch), self.now
         if before is not None and not (abs(roll - before[0]) <= change and abs(pitch - before[1]) <= change):
             return _JUMP
         return self._last

@@ -176,15 +176,15 @@ class JointAngleChannel(VectorChannel):
             self._room = min(*map(sub, numbers, self._low), *map(sub, self._high, numbers))
             if self._room < 0.0:
                 return False
-        self._last, self._read = numbers, [self._now] * len(self._read)
+        self._last, self._read = numbers, [self.now] * len(self._read)
         return True
 
     def _read_leg(self, leg: int, value: Any) -> Vector | str:
         angles = super()._read_leg(leg, value)
         if isinstance(angles, str):
             return angles
-        most, of_leg = _JUMP + _FASTER * self._speed * (self._now - self._read[leg]), slice(3 * leg, 3 * leg + 3)
+        most, of_leg = _JUMP + _FASTER * self._speed * (self.now - self._read[leg]), slice(3 * leg, 3 * leg + 3)
         if any(abs(now - before) > most for now, before in zip(angles, self._last[of_leg], strict=True)):
             return "change faster than the servos turn"
-        self._last[of_leg], self._read[leg], self._room = angles, self._now, -1.0
+        self._last[of_leg], self._read[leg], self._room = angles, self.now, -1.0
         return angles

@@ -77,7 +77,7 @@ class ReadingsValidator:
             Time since the last call [s].
         """
         for channel in self._timed:
-            channel.elapse(dt)
+            channel.now += dt
         if readings is None:
             return _NO_READINGS
         most = max(_MOST_AGE, _MOST_TICKS * dt)
