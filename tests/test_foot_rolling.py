@@ -88,10 +88,41 @@ def test_a_lower_body_has_its_feet_at_rest_again():
     np.testing.assert_allclose(w.feet, points.feet, atol=1e-9)
 
 
+@pytest.mark.parametrize(("name", "gait", "width"), [("strider", "wave", 0.03), ("makeyourpet", "tripod", -0.02)])
+def test_standing_feet_do_not_slip_while_the_walk_changes_to_other_rest_footholds(name, gait, width):
+    """What a foot rolls about follows its rest foothold in the air only: the body's pose stays the same."""
+    w, twist = walking(preset(name), gait, (1, 0, 0), 0.5)
+    trace = Trace(w).run(twist, 1.0, 0.02).run(Command(twist=tuple(twist), stance_width=width), 3 * w.cycle_time, 0.02)
+    assert not w.limitations
+    assert trace.slip().max() < SLIP
+
+
+@pytest.mark.parametrize("height", [0.077, 0.125])
+def test_the_guard_lets_a_robot_on_balls_walk_on_at_another_height(height):
+    controller, dt = RobotController(preset("strider")), 0.01
+    for tick in range(300):
+        command = Command(twist=(0.05, 0, 0), body_height=height if tick >= 100 else None)
+        assert not controller.step(command, dt).interventions
+
+
+@pytest.mark.parametrize("name", ON_BALLS)
+def test_uneven_ticks_accelerate_joints_no_harder_than_even_ones(name):
+    """The balls roll about where they rest at the posture that is solved, not at that of the tick before."""
+    hardest = {}
+    for ticks in ((0.05, 0.001), (0.0255, 0.0255)):
+        trace = Trace(WalkController(preset(name))).run(Command(body=(0, 0, -0.02, 0, 0.1, 0)), 0.02)
+        for _ in range(30):
+            for dt in ticks:
+                trace.step((0, 0, 0), dt)
+        hardest[ticks] = trace.joint_shares()[1].max()
+    uneven, even = hardest.values()
+    assert 0 < uneven < 1.5 * even
+
+
 def solver_of(setup, rest, out=()):
     solver = JointSolver(setup.robot)
     now = moment_of(setup, rest)
-    solver.rolling.step(now.posture.value, rest, list(out), 0.02)
+    solver.rolling.step(rest, list(out), 0.02, down=now.down)
     return solver, now
 
 
@@ -127,25 +158,25 @@ def test_the_feet_are_those_of_the_forward_kinematics():
 
 def test_a_stance_is_solved_once():
     setup, rest = setup_of("strider"), rest_of("strider")
-    posture = moment_of(setup, rest).posture.value
+    posture, down = moment_of(setup, rest).posture.value, np.ones(6, dtype=bool)
     rolling = FootRolling(setup.robot)
-    rolling.step(posture, rest, [], 0.02)
-    balls = rolling.balls
+    rolling.step(rest, [], 0.02, down=down)
+    balls = rolling.balls(posture)
     for same in (rest, rest.copy()):
-        rolling.step(posture, same, [], 0.02)
-        assert rolling.balls is balls
-    rolling.step(posture.copy(), rest, [], 0.02)
-    assert rolling.balls is not balls
-    assert rolling.balls == balls
+        rolling.step(same, [], 0.02, down=down)
+        assert rolling.balls(posture) is balls
+    again = rolling.balls(posture.copy())
+    assert again is not balls
+    assert again == balls
     for _ in range(400):
-        rolling.step(posture, 1.05 * rest, [], 0.02)
+        rolling.step(1.05 * rest, [], 0.02, down=~down)
     fresh = FootRolling(setup.robot)
-    fresh.step(posture, 1.05 * rest, [], 0.02)
-    np.testing.assert_array_equal(rolling.balls, fresh.balls)
-    assert np.abs(np.array(rolling.balls) - balls).max() > 1e-4
+    fresh.step(1.05 * rest, [], 0.02, down=down)
+    np.testing.assert_array_equal(rolling.balls(posture), fresh.balls(posture))
+    assert np.abs(np.array(rolling.balls(posture)) - balls).max() > 1e-4
     points = FootRolling(point_feet("strider"))
-    points.step(posture, rest, [], 0.02)
-    assert points.balls is None
+    points.step(rest, [], 0.02, down=down)
+    assert not points.started
 
 
 def test_odometry_knows_that_balls_roll():
@@ -197,12 +228,14 @@ def test_balls_roll_from_the_inclination_of_the_tibia_at_rest(seed):
     x, y, z, roll, pitch, yaw = rng.uniform(-1, 1, 6) * (0.02, 0.02, 0.02, 0.1, 0.1, 0.1) + (0, 0, 0.14, 0, 0, 0)
     rest = rng.uniform(0.22, 0.28, 6) * np.exp(1j * (robot.mount_yaw + rng.uniform(-0.3, 0.3, 6)))
     rolling, pose = FootRolling(robot), Pose.from_rpy(roll, pitch, yaw, (x, y, z))
-    rolling.step(np.array([x, y, z, roll, pitch, yaw, 0.03]), rest, [], 0.02)
+    posture = np.array([x, y, z, roll, pitch, yaw, 0.03])
+    rolling.step(rest, [], 0.02, down=np.ones(6, dtype=bool))
     feet = np.stack([rest.real, rest.imag, np.zeros(6)], axis=-1)
     coxa, femur, tibia = np.moveaxis(inverse_kinematics(robot, feet, pose).require().angles, -1, 0)
     legs = np.stack([np.cos(robot.mount_yaw + coxa), np.sin(robot.mount_yaw + coxa), np.zeros(6)], axis=-1)
     at_rest = radius * (femur + tibia + legs @ pose.rotation[2])
-    np.testing.assert_allclose(rolling.balls, np.stack([radius, at_rest], axis=-1), atol=1e-12)
+    np.testing.assert_allclose(rolling.balls(posture), np.stack([radius, at_rest], axis=-1), atol=1e-12)
     rows = [tuple(row) for row in pose.rotation.tolist()]
-    found = rolling.rolled([tuple(foot) for foot in feet.tolist()], [0.0] * 6, tuple(rows), (x, y, z))
+    feet_at = [tuple(foot) for foot in feet.tolist()]
+    found = rolling.rolled(feet_at, [0.0] * 6, tuple(rows), (x, y, z), posture=posture)
     np.testing.assert_allclose(found, feet, atol=1e-14)

@@ -14,12 +14,12 @@ from tarsus.gait.stance.stance_geometry import SWING_HEIGHT, Rows, rotation_rows
 from tarsus.robot.robot import Robot
 
 if TYPE_CHECKING:
-    from jaxtyping import Complex, Float
+    from jaxtyping import Bool, Complex, Float
 
 __all__ = ["FootRolling"]
 
-# Bandwidth with which other rest footholds, or a leg out of the gait, are followed [rad/s].
-_BANDWIDTH = 5.0
+# Bandwidth with which other rest footholds, or a leg out of the gait, are followed: within a swing [rad/s].
+_BANDWIDTH = 12.0
 # Keeps quotients finite for a straight leg, and for a foot on its femur axis [m^2].
 _TINY = 1e-12
 
@@ -32,7 +32,8 @@ class FootRolling:
     the posture and of the foothold: the same at lift-off and at touchdown, continuous from stance to swing, towards the
     rest foothold, and zero there. It leaves out that the leg turns while the ball rolls, which is of second order: less
     than 0.3 % of a stroke. Where posture or rest footholds change, the origin follows, so that a foot at rest is at
-    its rest foothold again.
+    its rest foothold again; that of a foot that stands follows other rest footholds only from its next lift-off on, as
+    its ball would slide.
 
     Parameters
     ----------
@@ -41,10 +42,8 @@ class FootRolling:
 
     Attributes
     ----------
-    balls : list of (radius, at_rest) or None
-        For each foot the radius of its ball, 0 for a leg out of the gait, and the radius times the inclination of the
-        tibia over the ground at the rest foothold [m]; None for a robot whose feet are points, and before the first
-        tick.
+    started : bool
+        Whether there is anything to roll: never for a robot whose feet are points, for others from the first tick on.
 
     Notes
     -----
@@ -54,8 +53,8 @@ class FootRolling:
     def __init__(self, robot: Robot) -> None:
         self._radius = np.asarray(robot.foot_radius, dtype=float)
         self._rolls = bool(self._radius.any())
-        self.balls: list[tuple[float, float]] | None = None
-        self._posture = self._rest = np.zeros(0)
+        self.started = False
+        self._rest = np.zeros(0)
         self._out: list[int] = []
         g = robot.geometry
         rows = (g.mount_x, g.mount_y, g.mount_z + g.up, g.coxa, g.side, g.side2)
@@ -63,21 +62,26 @@ class FootRolling:
         self._legs: list[tuple[float, ...]] = list(zip(*columns, strict=True))
         # Rest footholds, x and y, and the radius of each ball, 0 for legs out of the gait [m].
         self._goal = np.zeros(3 * robot.legs)
+        # The same, with those at which the feet that stand came down.
+        self._aim = self._goal
         self._filter = CriticallyDamped.still(self._goal)
+        # The balls, and the posture and rest footholds for which they are.
+        self._balls: list[tuple[float, float]] = []
+        self._solved = np.zeros(0), self._filter
 
     def step(
-        self, posture: Float[np.ndarray, "_"], rest: Complex[np.ndarray, "legs"], out_of_gait: list[int], dt: float
+        self, rest: Complex[np.ndarray, "legs"], out_of_gait: list[int], dt: float, *, down: Bool[np.ndarray, "legs"]
     ) -> None:
-        """Advance by a tick; a stance that stays the same is not solved again.
+        """Advance by a tick.
 
         Parameters
         ----------
-        posture : array, shape (7,) or more
-            The posture.
         rest : complex array, shape (legs,)
             Rest footholds in the heading frame [m].
         out_of_gait, dt : list of int, float
             Legs that are taken out of the gait: their feet are where they are commanded to be; length of the tick [s].
+        down : array of bool, shape (legs,)
+            Feet that are not in a swing.
         """
         if not self._rolls:
             return
@@ -87,17 +91,50 @@ class FootRolling:
             goal = np.concatenate([rest.real, rest.imag, radius])
             self._goal = self._goal if np.array_equal(goal, self._goal) else goal
             self._rest, self._out = rest, out_of_gait
-        if self.balls is None:
-            self._filter = CriticallyDamped.still(self._goal)
-        before = self._filter
-        self._filter = before.settling_step(self._goal, dt, bandwidth=_BANDWIDTH)
-        if self._filter is before and posture is self._posture:
-            return
-        self._posture = posture
-        self.balls = self._balls(posture)
+        if not self.started:
+            self.started, self._aim, self._filter = True, self._goal, CriticallyDamped.still(self._goal)
+        if self._aim is not self._goal:
+            aim = np.where(np.concatenate([down, down, np.zeros_like(down)]), self._aim, self._goal)
+            if np.array_equal(aim, self._goal):
+                self._aim = self._goal
+            elif not np.array_equal(aim, self._aim):
+                self._aim = aim
+        self._filter = self._filter.settling_step(self._aim, dt, bandwidth=_BANDWIDTH)
+
+    def balls(self, posture: Float[np.ndarray, "_"]) -> list[tuple[float, float]]:
+        """Return each ball's radius, 0 for a leg out of the gait, and the radius times its tibia's inclination at rest.
+
+        Those of a stance that stays the same are not computed again.
+
+        Parameters
+        ----------
+        posture : array, shape (7,) or more
+            The posture.
+
+        Returns
+        -------
+        list of (radius, at_rest)
+            For each foot; the inclination is that over the ground at the rest foothold [m].
+        """
+        if self._solved[0] is posture and self._solved[1] is self._filter:
+            return self._balls
+        x, y, radius = self._filter.value.reshape(3, -1).tolist()
+        *position, roll, pitch, yaw = posture[:SWING_HEIGHT].tolist()
+        level = [0.0] * len(x)
+        rest = list(zip(x, y, level, strict=True))
+        legs = self._legs_over_ground(rest, level, rotation_rows(roll, pitch, yaw), position)
+        self._balls = [(ball, ball * leg[2]) for ball, leg in zip(radius, legs, strict=True)]
+        self._solved = posture, self._filter
+        return self._balls
 
     def rolled(
-        self, feet: Sequence[Vector], standing: Sequence[float], rotation: Rows, position: Sequence[float]
+        self,
+        feet: Sequence[Vector],
+        standing: Sequence[float],
+        rotation: Rows,
+        position: Sequence[float],
+        *,
+        posture: Float[np.ndarray, "_"],
     ) -> list[Vector]:
         """Return the feet with their balls rolled.
 
@@ -110,8 +147,10 @@ class FootRolling:
             high it is lifted, so that it leaves the ground and lands as it stands.
         rotation, position : three rows, (x, y, z)
             Rotation of the body in that frame; position of the body's origin in that frame [m].
+        posture : array, shape (7,) or more
+            The posture, without what the body moves beyond it, for which a foot at rest is at its rest foothold.
         """
-        legs = zip(feet, self.balls or (), self._legs_over_ground(feet, standing, rotation, position), strict=True)
+        legs = zip(feet, self.balls(posture), self._legs_over_ground(feet, standing, rotation, position), strict=True)
         found = []
         for (fx, fy, fz), (radius, at_rest), (x, y, inclination, bend, out) in legs:
             # A Newton step: the tibia turns further as the foot moves.
@@ -145,11 +184,3 @@ class FootRolling:
             inclination = atan2(z - up, r - out) + r20 * x + r21 * y
             found.append((r00 * x + r01 * y, r10 * x + r11 * y, inclination, bend, out))
         return found
-
-    def _balls(self, posture: Float[np.ndarray, "_"]) -> list[tuple[float, float]]:
-        x, y, radius = self._filter.value.reshape(3, -1).tolist()
-        *position, roll, pitch, yaw = posture[:SWING_HEIGHT].tolist()
-        level = [0.0] * len(x)
-        rest = list(zip(x, y, level, strict=True))
-        legs = self._legs_over_ground(rest, level, rotation_rows(roll, pitch, yaw), position)
-        return [(ball, ball * leg[2]) for ball, leg in zip(radius, legs, strict=True)]

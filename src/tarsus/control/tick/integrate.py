@@ -52,7 +52,7 @@ def _step_inputs(walk: WalkComponents, tick: TickState, dt: float) -> StepInputs
         hold_feet = hold_feet or walk.ground.support.waits
         if walk.ground.offsets is not None:
             offsets = walk.ground.offsets * state.down
-    walk.solver.rolling.step(state.posture.value, footholds.rest, excluded, dt)
+    walk.solver.rolling.step(footholds.rest, excluded, dt, down=state.down)
     return StepInputs(
         gait=timing.gait,
         frequency=0.0 if standing else timing.frequency,

@@ -67,10 +67,11 @@ class JointSolver:
         for foot, height, offset in zip(state.foot.tolist(), state.heights(swing_height), offsets, strict=True):
             in_heading = (foot - origin) * turn
             feet.append((in_heading.real, in_heading.imag, height + offset - state.elevation))
-        if self.rolling.balls is not None:
+        if self.rolling.started:
             bottoms = zip(state.ground_height.tolist(), offsets, strict=True)
             standing = [height + offset - state.elevation for height, offset in bottoms]
-            feet = self.rolling.rolled(feet, standing, rotation, position)
+            # About the rest at the posture that is solved: at an earlier one, the next tick would catch up at once.
+            feet = self.rolling.rolled(feet, standing, rotation, position, posture=state.posture.value)
         found: Any = self._scalar_solver.angles(feet, rotation, position)
         if found is None:
             found = inverse_kinematics(self._robot, (np.array(feet) - position) @ np.array(rotation)).angles
