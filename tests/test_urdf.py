@@ -17,6 +17,7 @@ from tarsus.export import to_urdf
 from tarsus.kinematics.leg import forward_kinematics
 from tarsus.kinematics.mass import centre_of_mass, total_mass
 from tarsus.robot.file import list_robots, load_robot, robot_from_text, robot_text
+from tarsus.robot.ring import ring
 from tarsus.robot.shape import TAILS
 from tarsus.urdf import robot_from_urdf, urdf_robot
 from urdf_frames import framed_urdf, stl
@@ -383,6 +384,50 @@ def test_other_numbers_of_legs_are_numbered_in_the_ring():
     found = urdf_robot(framed_urdf(spider, seed=2).text)
     assert found.robot.leg_names == spider.leg_names
     assert found.deviation < 1e-7
+
+
+def around(mounts, yaw):
+    """A robot with legs at mounts (legs, 2), which point to yaw."""
+    legs = len(yaw)
+    return tarsus.Robot(
+        name="around",
+        leg_names=tuple(f"leg {number}" for number in range(1, legs + 1)),
+        mount_position=np.column_stack([mounts, np.zeros(legs)]),
+        mount_yaw=np.asarray(yaw),
+        coxa=np.full(legs, 0.05),
+        femur=np.full(legs, 0.08),
+        tibia=np.full(legs, 0.12),
+        limits=np.radians([[[-60, 60], [-80, 100], [-160, 10]]] * legs),
+        body_mass=np.array(1.0),
+        link_mass=np.full((legs, 3), 0.05),
+    )
+
+
+def assert_listed_as_imported(mounts, yaw):
+    """In this order, through the robot file too, whatever the order in the URDF file."""
+    for order in (np.arange(len(yaw)), np.random.default_rng(3).permutation(len(yaw))):
+        found = urdf_robot(to_urdf(around(mounts[order], yaw[order]))).robot
+        np.testing.assert_allclose(found.mount_position[:, :2], mounts, atol=1e-9)
+        np.testing.assert_allclose(np.exp(1j * found.mount_yaw), np.exp(1j * yaw), atol=1e-9)
+        assert robot_from_text(robot_text(found), where="the file") == found
+
+
+@pytest.mark.parametrize("turn", [-35.0, 35.0])
+def test_mounts_order_the_legs_however_far_these_are_turned(turn):
+    """The feet of every other leg are beyond those of its neighbour."""
+    at = np.radians(np.arange(10) * 36.0 + 4.0)
+    yaw = at + np.radians(turn) * np.tile([1, -1], 5)
+    assert_listed_as_imported(0.08 * np.stack([np.cos(at), np.sin(at)], axis=-1), yaw)
+
+
+@pytest.mark.parametrize("apart", [0.0, 0.004])
+def test_mounts_on_one_line_are_listed_around_the_body_by_where_their_legs_point(apart):
+    left = np.stack([np.array([0.11, 0.03, -0.07]), np.full(3, apart)], axis=-1)
+    mounts, yaw = np.concatenate([left, -left]), np.radians([60, 90, 120, -120, -90, -60])
+    assert_listed_as_imported(mounts, yaw)
+    # From front to rear, it is no ring.
+    rows = np.argsort(-mounts[:, 0])
+    assert ring(mounts[rows] @ [1, 1j], np.exp(1j * yaw[rows])) == [0, 2, 4, 5, 3, 1]
 
 
 def test_a_leg_whose_foot_is_over_its_coxa_axis_points_outward():

@@ -13,6 +13,7 @@ from tarsus.errors import RobotFileError
 from tarsus.robot.catalogue import load_servo, servo_of
 from tarsus.robot.document_problems import key_of
 from tarsus.robot.leg_words import end_in_name, side_in_name
+from tarsus.robot.ring import ring
 from tarsus.robot.robot import JOINTS, GaitDefaults, Robot, Source
 from tarsus.robot.schema import JointTable, Leg, LegEntry, RobotFile, ServoFigures
 from tarsus.robot.servo import Servo
@@ -28,6 +29,8 @@ _Flat: TypeAlias = dict[str, Any]
 _NEEDED = ("coxa_mm", "femur_mm", "tibia_mm", *(f"limits_deg.{joint}" for joint in JOINTS))
 _MASSES = tuple(f"mass_kg.{joint}" for joint in JOINTS)
 _LEAST_DISTANCE_MM = 1.0
+# Makes complex numbers of x and y.
+_COMPLEX = np.array([1, 1j])
 
 
 def build_robot(file: RobotFile, *, where: str) -> Robot:
@@ -138,30 +141,28 @@ _FRAMES = (
 
 def _out_of_order(entries: Sequence[LegEntry], points: Float[np.ndarray, "n 3"]) -> list[str]:
     plane = points[:, :2] - points[:, :2].mean(axis=0)
-    order = _ring(plane)
+    yaw = np.array([radians(entry.yaw_deg) for entry in entries])
+    directions = np.stack([np.cos(yaw), np.sin(yaw)], axis=-1)
+    order = ring(plane @ _COMPLEX, directions @ _COMPLEX)
     if order == list(range(len(order))):
         return []
     expected = ", ".join(f'"{entries[i].name}"' for i in order)
-    cause = _why_out_of_order([entry.name for entry in entries], plane)
+    cause = _why_out_of_order([entry.name for entry in entries], plane, directions)
     return [f"legs: they must be listed counter-clockwise from the front left: {expected}{cause}"]
 
 
-def _ring(plane: Float[np.ndarray, "n 2"]) -> list[int]:
-    """Return the legs counter-clockwise, starting from straight ahead."""
-    # Rounding puts a leg straight ahead first, whatever the sign of its y.
-    angles = np.round(np.degrees(np.arctan2(plane[:, 1], plane[:, 0])), 9) % 360
-    return [int(leg) for leg in np.argsort(angles, kind="stable")]
-
-
-def _why_out_of_order(names: Sequence[str], plane: Float[np.ndarray, "n 2"]) -> str:
+def _why_out_of_order(
+    names: Sequence[str], plane: Float[np.ndarray, "n 2"], directions: Float[np.ndarray, "n 2"]
+) -> str:
     """Return the likely cause of a wrong order: another frame, if the names fit it, or a clockwise list."""
     listed = list(range(len(names)))
     if not _names_fit(names, plane):
         for (xx, xy, yx, yy), words in _FRAMES:
-            turned = plane @ np.array([[xx, yx], [xy, yy]])
-            if _ring(turned) == listed and _names_fit(names, turned):
+            turn = np.array([[xx, yx], [xy, yy]])
+            turned = plane @ turn
+            if ring(turned @ _COMPLEX, directions @ turn @ _COMPLEX) == listed and _names_fit(names, turned):
                 return f". Likely cause: {words}"
-    order = _ring(plane)
+    order = ring(plane @ _COMPLEX, directions @ _COMPLEX)
     step = [(b - a) % len(order) for a, b in zip(order, [*order[1:], order[0]], strict=True)]
     if step.count(1) == len(order):
         return f'. Likely cause: the list does not start with "{names[order[0]]}"'

@@ -17,6 +17,7 @@ from tarsus.kinematics.leg import forward_kinematics
 from tarsus.kinematics.rotation import rotation_about
 from tarsus.representation import represented
 from tarsus.robot.leg_words import end_in_name, side_in_name
+from tarsus.robot.ring import ring
 from tarsus.robot.robot import JOINTS, Robot, Source
 from tarsus.robot.units import from_milli, radians, to_decimal
 from tarsus.urdf.document import UrdfDocument, parse_urdf
@@ -150,7 +151,7 @@ def urdf_robot(
         T_robot_body[:3, 3] -= middle
         middle = np.zeros(3)
     legs = [fitted_leg(chain, foot, T_robot_body, middle) for chain, foot in zip(tree.legs, feet, strict=True)]
-    order = _ring(legs, middle)
+    order = _order(legs)
     legs, feet, chains = [legs[i] for i in order], [feet[i] for i in order], [tree.legs[i] for i in order]
     names = _leg_names(legs)
     robot, remarks = _robot(document, tree, legs, names, T_robot_body, where, name)
@@ -210,16 +211,10 @@ def _foot(chain: Chain, given: tuple[float, float, float] | None, *, folder: Pat
     return found
 
 
-def _ring(legs: list[FittedLeg], middle: Float[np.ndarray, "3"]) -> list[int]:
-    """Return the order of the legs: counter-clockwise, from the front left."""
-
-    def angle(leg: FittedLeg) -> float:
-        # The stance decides: mounts of legs on one line are told apart by where their legs point.
-        x, y = (leg.mount - middle)[:2] + 0.5 * leg.lengths.sum() * np.array([math.cos(leg.yaw), math.sin(leg.yaw)])
-        # Rounded, as a leg straight ahead would otherwise be the first or the last by the noise of the computation.
-        return round(math.atan2(y, x), 6) % (2 * math.pi)
-
-    return sorted(range(len(legs)), key=lambda i: angle(legs[i]))
+def _order(legs: list[FittedLeg]) -> list[int]:
+    """Return the order of the legs in a robot file, by the numbers that are written to it."""
+    mounts, yaw = _lengths([leg.mount for leg in legs]), _angles([leg.yaw for leg in legs])
+    return ring(mounts[:, 0] + 1j * mounts[:, 1], np.exp(1j * yaw))
 
 
 def _leg_names(legs: list[FittedLeg]) -> tuple[str, ...]:

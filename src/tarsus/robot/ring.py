@@ -1,0 +1,46 @@
+"""The order of a robot's legs: around the body, as robot files list them and imports number them."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from jaxtyping import Complex
+
+__all__ = ["ring"]
+
+# Decimals of directions [deg]: less than a micrometre, and more than the noise of mounts that are computed.
+_DIGITS = 6
+# By which part of their greatest distance mounts in the same direction are moved to where their legs point.
+_ASIDE = 1e-3
+
+
+def ring(mounts: Complex[np.ndarray, "legs"], directions: Complex[np.ndarray, "legs"]) -> list[int]:
+    """Return the legs counter-clockwise, starting from straight ahead.
+
+    The mounts decide, seen from their middle; where they lie in the same direction, for example on one line along the
+    body, their legs point aside in the order of the ring.
+
+    Parameters
+    ----------
+    mounts : complex array, shape (legs,)
+        Positions of the coxa axes, x forward and y left, in any unit.
+    directions : complex array, shape (legs,)
+        Where the legs point at zero, of length 1.
+
+    Returns
+    -------
+    list of int
+        Indices of the legs.
+    """
+    places = mounts - mounts.mean()
+    # Rounding puts a leg straight ahead first, whatever the sign of its y.
+    angles = np.round(np.angle(places, deg=True), _DIGITS) % 360
+    shared = (angles[:, None] == angles).sum(axis=1) > 1
+    beside = np.angle(places + _ASIDE * np.abs(places).max() * directions, deg=True)
+    aside = np.where(shared, np.round((beside - angles + 180) % 360 - 180, _DIGITS), 0.0)
+    # Straight ahead the ring is open: legs that point to the right come last.
+    angles = np.where((angles == 0) & (aside < 0), 360.0, angles)
+    return [int(leg) for leg in np.lexsort((aside, angles))]
