@@ -167,6 +167,35 @@ def test_a_state_that_can_not_be_reached_is_said_until_another_is_wanted(monkeyp
     assert controller.step(Command(state="lying"), DT).limitations == ()
 
 
+def test_a_robot_that_sat_down_stands_up_the_same_way_where_no_other_is_found(monkeypatch):
+    def refuse(*_args, **_more):
+        raise TarsusError("no way")
+
+    for name in ("stand_up", "fold"):
+        monkeypatch.setattr(f"tarsus.control.robot_controller.{name}", refuse)
+    controller = RobotController(STRIDER)
+    states_of(controller, Command(twist=(0.05, 0.0, 0.1), body_height=0.12), 3.0)
+    states_of(controller, STILL, 5.0, until=RobotState.STANDING)
+    stood = controller.output
+    down = states_of(controller, Command(state="lying"), 8.0, until=RobotState.LYING)
+    assert down == [RobotState.STANDING, RobotState.SITTING, RobotState.LYING]
+    # Turned back on the way up, it lies again; folding is another motion, which is refused.
+    assert states_of(controller, Command(state="standing"), 0.5) == [RobotState.LYING, RobotState.RISING]
+    assert states_of(controller, Command(state="folded"), 8.0) == [RobotState.RISING, RobotState.LYING]
+    assert controller.output.limitations[0].cause == "folding is not possible: no way"
+    up = states_of(controller, Command(state="standing"), 8.0, until=RobotState.STANDING)
+    assert up == [RobotState.LYING, RobotState.RISING, RobotState.STANDING]
+    assert controller.output.limitations == ()
+    for found, expected in (
+        (controller.output.angles, stood.angles),
+        (controller.output.body.position, stood.body.position),
+        (controller.output.feet, stood.feet),
+    ):
+        np.testing.assert_allclose(found, expected, atol=1e-6)
+    assert states_of(controller, (0.05, 0.0, 0.0), 2.0) == [RobotState.STANDING, RobotState.WALKING]
+    assert not controller.guard.counts
+
+
 @pytest.mark.parametrize("state", ["rising", "walking", "sitting", 3, "fault"])
 def test_other_states_can_not_be_asked_for(state):
     with pytest.raises(InputError, match=r"state is .*; it must be one of 'standing', 'lying', 'folded'"):

@@ -16,7 +16,7 @@ from tarsus.control.readings import SensorReadings
 from tarsus.control.safety import Guard, GuardBounds, GuardState, Intervention
 from tarsus.control.sequence import MotionSequence
 from tarsus.control.startup import fold, sit_down, stand_up
-from tarsus.control.states.activity import Activity, Playing, Resting, Snapshot, Walking
+from tarsus.control.states.activity import Activity, Playing, Resting, Snapshot, Walking, way_back
 from tarsus.control.states.persistent_command import PersistentCommand, stopped
 from tarsus.control.states.reduced_walking import LegFailures
 from tarsus.control.states.robot_state import RobotState, next_state, requested_state
@@ -171,8 +171,7 @@ class RobotController:
         """Advance what the robot does, and begin or end changes of state."""
         self._begin_change(command)
         before, activity = self._now.angles, self._activity
-        upright = self._goal is RobotState.STANDING
-        activity.step(command if upright else stopped(command, self.robot.legs), dt, readings)
+        activity.step(command if self._goal.upright else stopped(command, self.robot.legs), dt, readings)
         if isinstance(activity, Walking):
             self._activity = self.leg_failures.following(activity, self._now, dt)
         if self._activity is not activity:
@@ -209,9 +208,11 @@ class RobotController:
         try:
             sequence = self._plan(state)
         except TarsusError as error:
-            self._rejected = Limitation(kind=LimitationKind.STATE, cause=f"{state} is not possible: {error}")
+            self._activity = way_back(self._activity, end)
+            if not isinstance(self._activity, Playing):
+                self._rejected = Limitation(kind=LimitationKind.STATE, cause=f"{state} is not possible: {error}")
             return
-        self._activity, self._before = Playing(sequence, state, before=self._activity, end=end), self._base
+        self._activity = Playing(sequence, state, before=self._activity, base=self._base, end=end)
         self._base = ground_frame(self._now.body) @ ground_frame(sequence.stages[0].start).inverse()
 
     def _next_change(self) -> tuple[RobotState, RobotState] | None:
@@ -231,14 +232,14 @@ class RobotController:
         """Go over to what follows a motion sequence."""
         end = playing.sequence.at(playing.sequence.duration)
         if playing.returning:
-            self._activity, self._base = playing.before, self._before
+            self._activity, self._base = playing.before, playing.base
         elif playing.end is RobotState.STANDING:
             frame = ground_frame(end.body)
             self._base = frame if self._base is None else self._base @ frame
             self._activity = self._new_walk()
             self._command.forget_released()
         else:
-            self._activity = Resting(end, playing.end)
+            self._activity = Resting(end, playing.end, after=playing)
         after = self._activity.snapshot
         self._now = self._now._replace(state=after.state, activity=after.activity, belly=after.belly)
 
@@ -250,8 +251,7 @@ class RobotController:
         if self._goal is RobotState.STANDING and self._now.state.upright:
             return
         command, state = self._command.full, self._now.state
-        rises = self._goal is RobotState.STANDING
-        cause = f"the robot is {state}; it {'starts once it stands' if rises else 'must stand'}"
+        cause = f"the robot is {state}; it {'starts once it stands' if self._goal.upright else 'must stand'}"
         if any(command.twist):
             yield Limitation(kind=LimitationKind.TWIST, cause=cause, asked=1.0, granted=0.0)
         if command.foot_velocities or any(point is not None for point in (command.foot_targets or {}).values()):

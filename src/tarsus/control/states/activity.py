@@ -24,7 +24,7 @@ from tarsus.robot.robot import Robot
 if TYPE_CHECKING:
     from jaxtyping import Bool, Float
 
-__all__ = ["Activity", "Playing", "Resting", "Snapshot", "Walking"]
+__all__ = ["Activity", "Playing", "Resting", "Snapshot", "Walking", "way_back"]
 
 
 class Snapshot(NamedTuple):
@@ -134,14 +134,17 @@ class Playing:
     ----------
     sequence, state : MotionSequence, RobotState
         What is played; what the robot does meanwhile.
-    before : Activity
-        What it did before, and does again where the sequence is played back to its start.
+    before, base : Activity, Pose or None
+        What it did before, and does again where the sequence is played back to its start; the pose of that activity's
+        ground frame.
     end : RobotState
         The state at the end.
     """
 
-    def __init__(self, sequence: MotionSequence, state: RobotState, *, before: Activity, end: RobotState) -> None:
-        self.sequence, self.state, self.before, self.end = sequence, state, before, end
+    def __init__(
+        self, sequence: MotionSequence, state: RobotState, *, before: Activity, base: Pose | None, end: RobotState
+    ) -> None:
+        self.sequence, self.state, self.before, self.base, self.end = sequence, state, before, base, end
         self._player, self._felt = SequencePlayer(sequence), before.snapshot.felt
         self.returning = False
 
@@ -153,7 +156,7 @@ class Playing:
 
     def leads_to(self, goal: RobotState) -> bool:
         """Return whether the end of the sequence is on the way to a state that is wanted."""
-        return self.end is goal or (self.state is RobotState.SITTING and goal is RobotState.FOLDED)
+        return self.end is goal or (self.end is RobotState.LYING and goal is RobotState.FOLDED)
 
     @property
     def done(self) -> bool:
@@ -178,17 +181,22 @@ class Resting:
     ----------
     sample, state : SequenceSample, RobotState
         How the robot lies; lying or folded.
+    after : Playing, optional
+        The sequence that has brought it there.
 
     Attributes
     ----------
     snapshot : Snapshot
         The robot, which does not move.
+    after : Playing or None
+        The sequence that has brought it there.
     """
 
-    def __init__(self, sample: SequenceSample, state: RobotState) -> None:
+    def __init__(self, sample: SequenceSample, state: RobotState, *, after: Playing | None = None) -> None:
         self.snapshot = Snapshot(
             sample.angles, sample.body, None, sample.contacts, belly=True, state=state, activity=str(state)
         )
+        self.after = after
 
     @classmethod
     def after_sitting(cls, robot: Robot, stance: Float[np.ndarray, "legs 3"], state: RobotState) -> Self:
@@ -238,3 +246,21 @@ class Resting:
 
 Activity: TypeAlias = Walking | Playing | Resting
 """What moves all joints, tick by tick."""
+
+
+def way_back(activity: Activity, end: RobotState) -> Activity:
+    """Return what leads to a state where nothing can be planned for it: the same activity where there is no such way.
+
+    A robot that has sat down from a stance stands up by playing that back: the feet are where they stood.
+
+    Parameters
+    ----------
+    activity, end : Activity, RobotState
+        What the robot does; the state that is wanted.
+    """
+    down = activity.after if isinstance(activity, Resting) and end.upright else None
+    if down is None or type(down.before) is not Walking:
+        return activity
+    down.state = RobotState.RISING
+    down.turn(back=True)
+    return down
