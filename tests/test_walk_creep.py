@@ -142,6 +142,14 @@ def test_the_body_height_changes_while_walking():
     assert walk.margin().min() > 0.004
 
 
+@pytest.mark.parametrize("place", [(-0.03, 0.02), (0.02, 0.02)])
+def test_the_body_shift_is_for_where_the_body_is_as_feet_step_to_another_stance(place):
+    """The body moves only once all feet have stepped; until then, its shift is for where it was."""
+    walk = Walk(robot_from_dict(QUADRUPED))
+    walk.go(Command(twist=(0.03, 0, 0), body=(*place, 0, 0, 0, 0)), 14.0)
+    assert walk.margin(every=1).min() > 0.004
+
+
 def test_a_hexapod_takes_up_a_gait_with_a_body_shift_and_leaves_it():
     """The shift ends while the robot stands, before the other gait steps."""
     around = Gait(1 - 1 / 9, tuple(np.arange(6) / 6), name="around", body_shift=True)

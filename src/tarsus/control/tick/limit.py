@@ -64,7 +64,7 @@ def limited(
     state = transitions.timing.with_first_lift(tick.gait, 0) if standing else tick.gait
     grant = granted_twist(limiters, TwistRequest(tuple(command.twist), dt, state, tick.twist))
     steps = not standing or any(grant.scaled(command.twist)) or not transitions.at_rest(tick.gait, stands=True)
-    shift = transitions.current.final_limits.shift if steps else None
+    shift = transitions.body_shift if steps else None
     shifted = transitions.pose.set_shift(shift, state.shift.value)
     if not steps or (standing and not shifted):
         # Every foot stays on the ground until the body is over those that stay.

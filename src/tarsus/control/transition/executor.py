@@ -21,7 +21,7 @@ from tarsus.control.walk_state import TickState
 from tarsus.gait.stance.stance_geometry import sway_fraction
 
 if TYPE_CHECKING:
-    from jaxtyping import Float
+    from jaxtyping import Complex, Float
 
 __all__ = ["TransitionExecutor"]
 
@@ -84,6 +84,13 @@ class TransitionExecutor:
         """Whether a transition waits until it may begin, or until its body motion may."""
         stepped = self._active is not None and all(self.footholds.transferred.tolist())
         return self.scheduler.planned is not None or stepped
+
+    @property
+    def body_shift(self) -> Complex[np.ndarray, "7"] | None:
+        """Coefficients of the body shift, array, shape (7,) [m]; None for a gait without one."""
+        # As long as only the feet step, the body is where it was.
+        steps = self._active is not None
+        return (self.current.stepping_limits if steps else self.current.final_limits).shift
 
     @property
     def changes_gait(self) -> bool:
