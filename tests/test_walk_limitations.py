@@ -51,6 +51,17 @@ def test_a_transition_that_will_be_met_is_no_limitation():
     np.testing.assert_allclose(controller.body.position[2], 0.14, atol=1e-3)
 
 
+@pytest.mark.parametrize("change", [{"body_height": 0.143}, {"stance_width": 0.06}])
+def test_a_change_that_is_taken_back_under_way_is_undone(change):
+    controller = controller_of()
+    height, feet = controller.body.position[2], np.abs(controller.feet @ (1, 1j, 0))
+    run(controller, Command(**change), 1.5)
+    # The first of the increments, which ends elsewhere, has begun.
+    assert not run(controller, Command(body_height=height, stance_width=0.0), 12)[-1]
+    np.testing.assert_allclose(controller.body.position[2], height, atol=1e-6)
+    np.testing.assert_allclose(np.abs(controller.feet @ (1, 1j, 0)), feet, atol=1e-5)
+
+
 @pytest.mark.no_cover
 def test_each_infeasible_quantity_has_its_own_limitation():
     controller = controller_of()

@@ -52,6 +52,8 @@ class TransitionScheduler:
         self._job: Incremental[StanceTransition | Cause] | None = None
         # Parameters for which nothing is left to plan.
         self._done: WalkParameters | None = None
+        # Whether the robot stands, or will stand, on the way from the current parameters to others.
+        self._between = False
         # What the limitations of the current transition are about.
         self._planned_for, self._stays = initial.parameters, False
         # What is limited besides by the current transition; kept until planning has come to a new result.
@@ -114,7 +116,7 @@ class TransitionScheduler:
                 return
         if idle and self.planned is None and self.requested is not self._done:
             asked, stay = self._next_parameters()
-            if asked not in (self.current.parameters, *self.rejections):
+            if self._is_open(asked, stay):
                 self._asked, self._stays, self._job = asked, stay, plan(asked, stay)
             else:
                 self._finish_request()
@@ -133,6 +135,8 @@ class TransitionScheduler:
         if transition.keeps_posture:
             kept = (found for found in before.limitations if found.kind is not LimitationKind.CYCLE_TIME)
             limitations = (*kept, *limitations)
+        else:
+            self._between = not transition.complete
         self.current = dataclasses.replace(transition, parameters=parameters, limitations=limitations)
         kept_for = dataclasses.replace(self._planned_for, cycle_time=transition.parameters.cycle_time)
         self._planned_for = kept_for if transition.keeps_posture else transition.parameters
@@ -156,7 +160,7 @@ class TransitionScheduler:
         self._shortfalls = tuple(chain.from_iterable(self.rejections.values()))
         # Standing otherwise has to wait until all legs are back in the gait.
         deferred = dataclasses.replace(self.requested.stepping_like(current), correction=current.correction)
-        if current.excluded and deferred not in (current, *self.rejections):
+        if current.excluded and self._is_open(deferred, False):
             self._shortfalls += rejection_limitations(deferred, current, self.current.posture, _DEFERRED)
 
     def _next_parameters(self) -> tuple[WalkParameters, bool]:
@@ -174,9 +178,15 @@ class TransitionScheduler:
             # Before a leg leaves the gait, the body shifts over the others.
             order.reverse()
         for parameters, stay in order:
-            if parameters not in (current, *self.rejections):
+            if self._is_open(parameters, stay):
                 return parameters, stay
         return current, True
+
+    def _is_open(self, parameters: WalkParameters, stay: bool) -> bool:
+        """Return whether parameters are neither met nor rejected; their posture is not where that stays."""
+        # Halfway to others, the current parameters have to be met anew.
+        met = parameters == self.current.parameters and (stay or not self._between)
+        return not met and parameters not in self.rejections
 
 
 def _gait(before: Gait, gait: Gait | str) -> Gait:
