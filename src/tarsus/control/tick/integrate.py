@@ -66,6 +66,7 @@ def _step_inputs(walk: WalkComponents, tick: TickState, dt: float) -> StepInputs
         admittance_offset=offsets,
         hold_feet=hold_feet,
         excluded=parameters.excluded if walk.foot_targets else (),
+        unstepped=transitions.unstepped,
         beats=timing.beats,
         swaying=pose.is_swaying(state.posture.value),
         shift=pose.shift,

@@ -82,8 +82,15 @@ class TransitionExecutor:
     @property
     def waiting(self) -> bool:
         """Whether a transition waits until it may begin, or until its body motion may."""
-        stepped = self._active is not None and all(self.footholds.transferred.tolist())
-        return self.scheduler.planned is not None or stepped
+        return self.scheduler.planned is not None or (self._active is not None and not self.unstepped)
+
+    @property
+    def unstepped(self) -> tuple[int, ...]:
+        """Legs of the gait whose feet have yet to step to new rest footholds; the body waits for them."""
+        if self._active is None:
+            return ()
+        excluded, transferred = self.current.parameters.excluded, self.footholds.transferred.tolist()
+        return tuple(leg for leg, done in enumerate(transferred) if not done and leg not in excluded)
 
     @property
     def body_shift(self) -> Complex[np.ndarray, "7"] | None:
@@ -143,7 +150,7 @@ class TransitionExecutor:
         return self.pose.reached(state.posture.value)
 
     def at_rest(self, state: GaitState, *, stands: bool = False) -> bool:
-        """Return whether every foot of the gait is at its rest foothold.
+        """Return whether every foot of the gait is at its rest foothold, and none has yet to step to a new one.
 
         Parameters
         ----------
@@ -155,7 +162,7 @@ class TransitionExecutor:
         off = np.abs(state.foot - rest)
         off[list(self.current.parameters.excluded)] = 0.0
         near = bool(off.max() <= stance_tolerance(state, scale=self._scale, stands=stands))
-        return near and not self._foot_targets.returning
+        return near and not self._foot_targets.returning and not self.unstepped
 
     # Beginning a transition.
 
@@ -221,9 +228,7 @@ class TransitionExecutor:
 
     def _try_to_move_body(self, active: StanceTransition, now: TickState) -> None:
         """Move the body once every foot is at its new rest foothold."""
-        excluded = self.current.parameters.excluded
-        stepped = all(done or leg in excluded for leg, done in enumerate(self.footholds.transferred.tolist()))
-        if not stepped or self.timing.frequency > 1 / active.cycle_timing.cycle_time:
+        if self.unstepped or self.timing.frequency > 1 / active.cycle_timing.cycle_time:
             return
         bounds = self._foot_targets.without_bounds(active.path_limits.bounds)
         if self._stays_within(bounds, now, self.timing):

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from tarsus.control.transition.stance_transition import StanceTransition
+from tarsus.control.walk.state import POSITION_TOLERANCE
 from tarsus.gait.foot_polygons import NORMALS_CONJUGATE
 from tarsus.gait.stance.velocity_limits import VelocityLimits
 
@@ -14,8 +15,6 @@ if TYPE_CHECKING:
     from jaxtyping import Bool, Complex, Float
 
 __all__ = ["FootholdTransfer"]
-
-_SAME = 1e-9
 
 
 class FootholdTransfer:
@@ -100,7 +99,7 @@ class FootholdTransfer:
         return np.where(moved[:, None], self.bounds, np.minimum(self.bounds, transition.stepping_limits.bounds))
 
     def _moved(self, transition: StanceTransition) -> Bool[np.ndarray, "legs"]:
-        return np.asarray(np.abs(transition.rest - self.new_rest) > _SAME)
+        return np.asarray(np.abs(transition.rest - self.new_rest) > POSITION_TOLERANCE)
 
     def begin(self, transition: StanceTransition, down: Bool[np.ndarray, "legs"]) -> None:
         """Begin to transfer the feet to new rest footholds.

@@ -202,6 +202,8 @@ class StepInputs(NamedTuple):
         Whether no foot lifts off.
     excluded : tuple of int
         Legs whose feet may not lift off.
+    unstepped : tuple of int
+        Legs whose feet step even if they are at their rest footholds.
     beats : int
         How many times per cycle feet lift off.
     swaying : bool
@@ -224,6 +226,7 @@ class StepInputs(NamedTuple):
     admittance_offset: Float[np.ndarray, "legs"]
     hold_feet: bool = False
     excluded: tuple[int, ...] = ()
+    unstepped: tuple[int, ...] = ()
     beats: int = 2
     swaying: bool = True
     felt: FeltInputs | None = None

@@ -98,6 +98,7 @@ def _lift(
         away = np.abs(state.foot - final) > stance_tolerance(
             state, scale=1.0 if inputs.felt is None else inputs.felt.scale
         )
+        away[list(inputs.unstepped)] = True
         # A leg that returns to the gait is over its foothold at best.
         above = state.ground_height > POSITION_TOLERANCE if inputs.felt is None else ~np.array(inputs.felt.steps)
         lifts = lifts & (away | above)
