@@ -59,6 +59,29 @@ def test_a_body_waits_for_no_feet_that_are_where_they_should_be_but_for_rounding
     assert controller.body.position[2] == pytest.approx(height, abs=1e-6)
 
 
+@pytest.mark.parametrize(
+    ("name", "command"),
+    [
+        ("strider", Command(body_height=0.4)),
+        ("makeyourpet", Command(body=(-0.044, 0.081, 0, 0, 0, 0), body_height=0.088)),
+        ("ch3r", Command(body=(0.03, -0.034, 0, 0.064, 0.133, 0), body_height=0.059)),
+        ("phantomx", Command(body=(-0.014, -0.093, -0.008, -0.191, 0.179, 0), body_height=0.075)),
+    ],
+)
+def test_a_robot_comes_back_from_the_end_of_its_reach(name, command):
+    """Feet that can't step there can once the body is over them."""
+    controller = WalkController(load_robot(name))
+    height, before = float(controller.body.position[2]), spread(controller)
+    hold(controller, command, 25)
+    assert controller.limitations
+    hold(controller, Command(body=LEVEL, body_height=height), 40)
+    assert controller.limitations == ()
+    np.testing.assert_allclose(controller.body.position, (0, 0, height), atol=1e-6)
+    np.testing.assert_allclose(spread(controller), before, atol=1e-5)
+    hold(controller, (0.02, 0, 0), DT)
+    assert controller.walk_state is WalkState.WALKING
+
+
 @pytest.mark.parametrize(("off", "stays"), [(0.9 * POSITION_TOLERANCE, True), (1.1 * POSITION_TOLERANCE, False)])
 def test_a_foot_steps_to_a_rest_foothold_unless_it_is_at_it(off, stays):
     setup = setup_of("strider")

@@ -15,7 +15,7 @@ from tarsus.control.incremental import complete
 from tarsus.control.limitation import Cause, Limitation, LimitationKind
 from tarsus.control.transition.feasible_fraction import TIPPING
 from tarsus.control.transition.planner import TransitionPlanner
-from tarsus.control.transition.stance_transition import StanceTarget, StanceTransition, WalkParameters
+from tarsus.control.transition.stance_transition import StanceTarget, StanceTransition, WalkParameters, target_stance
 from tarsus.errors import UnreachableError
 from tarsus.gait.gait import Gait
 from tarsus.gait.stance.stance_geometry import SWING_HEIGHT, rotation_rows, stance_geometry_of
@@ -264,6 +264,43 @@ def test_a_step_that_could_not_be_taken_on_the_way_is_refused():
     parameters = parameters_of(setup, gait=Gait.named("wave"), excluded=(1,), correction=lean)
     found = planned(setup, parameters, first.posture, first.rest)
     assert found.reason == "the robot would tip over on the way"
+
+
+def test_from_a_posture_just_out_of_reach_the_feet_cannot_step_on():
+    setup, first = setup_of("strider"), start("strider")
+    # All of the path is in reach but its very begin, where the body has no stance to move from.
+    away = first.posture + np.array([0, 0, 0.12, 0, 0, 0, 0])
+    found = planned(setup, parameters_of(setup), away, first.rest)
+    assert found.reason == "could not stand and step on the way"
+    assert found.leg in setup.robot.leg_names
+
+
+def test_where_feet_cannot_step_in_the_present_posture_the_body_moves_first():
+    setup, now = setup_of("makeyourpet"), start("makeyourpet")
+    corner = parameters_of(setup, body_height=0.088, body=(-0.044, 0.081, 0.0, 0.0, 0.0, 0.0))
+    while not now.complete or now.parameters is not corner:
+        now = planned(setup, corner, now.posture, now.rest)
+    found = planned(setup, parameters_of(setup), now.posture, now.rest)
+    assert not found.complete
+    np.testing.assert_array_equal(found.rest, now.rest)
+    away = [np.abs(each.posture - start("makeyourpet").posture) for each in (found, now)]
+    assert (away[0][:3] < away[1][:3]).all()
+    # The feet have room again, to step back as well.
+    assert found.final_limits.margins.min() > 10 * now.final_limits.margins.min()
+    following = planned(setup, parameters_of(setup), found.posture, found.rest)
+    assert isinstance(following, StanceTransition)
+
+
+def test_where_neither_feet_nor_body_can_go_first_a_shorter_way_is_taken():
+    setup, first = setup_of("phantomx"), start("phantomx")
+    height, level = setup.body_height, StanceTarget(first.posture, first.rest)
+    high = parameters_of(setup, body_height=1.3 * height, body=(0.05, 0.0, 0.0, 0.0, 0.0, 0.0))
+    now = target_stance(setup.robot, high, level)
+    found = planned(setup, parameters_of(setup, body_height=0.5 * height, stance_width=0.02), *now)
+    assert not found.complete
+    assert 0 < np.abs(found.rest - now.rest).max() < 0.03
+    assert 0.5 * height < found.posture[2] < now.posture[2]
+    assert found.path_limits.feasible
 
 
 def test_of_rest_footholds_far_out_of_reach_a_first_step_is_taken():

@@ -152,17 +152,6 @@ def test_a_gait_that_tips_the_robot_over_is_reported():
     assert controller.gait.name == "tripod"
 
 
-def test_a_stance_from_which_the_feet_cannot_step_on_is_reported():
-    controller = controller_of()
-    run(controller, Command(body_height=0.4), 20)
-    run(controller, Command(body_height=0.11), 4)
-    (limitation,) = controller.limitations
-    assert limitation.kind is LimitationKind.BODY_HEIGHT
-    assert limitation.asked == 0.11
-    assert limitation.cause == "could not stand and step on the way"
-    assert limitation.leg
-
-
 def test_a_walk_that_its_joints_slow_down_says_so():
     controller = controller_of()
     for _ in range(100):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 
@@ -30,8 +31,32 @@ from tarsus.robot.robot import Robot
 __all__ = ["TransitionPlanner"]
 
 _LEAST_FRACTION = 0.02
+# The least move of the body that is made for its own [m, rad]: every one brings the commanded posture closer.
+_LEAST_MOVE = 1e-3
 # Differences below this are rounding.
 _SAME = 1e-9
+
+
+class _Path(NamedTuple):
+    """The path from the present stance to the commanded one, and how much of it is feasible."""
+
+    start: StanceTarget
+    end: StanceTarget
+    fraction: float = 1.0
+    cause: Cause | None = None
+
+    def at(self, fraction: float) -> StanceTarget:
+        return self.start.towards(self.end, fraction)
+
+
+class _Increment(NamedTuple):
+    """A part of a path that is feasible, and its limits."""
+
+    goal: StanceTarget
+    timing: CycleTiming
+    stepping: VelocityLimits
+    on_path: VelocityLimits
+    final: VelocityLimits
 
 
 class TransitionPlanner:
@@ -108,57 +133,77 @@ class TransitionPlanner:
         robot = self._robot
         end = present if stay and present else target_stance(robot, parameters, present)
         yield
-        # How much of the path is feasible, and what limits that.
-        start, feasible = present or end, 1.0
-        cause: Cause | None = None
-        if start is not end:
-            feasible, cause = yield from reachable_fraction(robot, start, end)
-            if cause is not None and feasible == 0:
+        path = _Path(present or end, end)
+        if path.start is not end:
+            fraction, cause = yield from reachable_fraction(robot, path.start, end)
+            if cause is not None and fraction == 0:
                 return cause
+            path = path._replace(fraction=fraction, cause=cause)
             yield
-        fraction = first_increment(robot, start, end, feasible)
-        if np.abs(end.rest - start.rest).max() > _SAME:
+        fraction = first_increment(robot, path.start, end, path.fraction)
+        if np.abs(end.rest - path.start.rest).max() > _SAME:
             yield
-        goal = start.towards(end, fraction)
-        limits = yield from self._limits(parameters, goal)
-        if not (limits.feasible or limits.balanced or start is end or parameters.gait.body_shift):
+        limits = yield from self._limits(parameters, path.at(fraction))
+        if not (limits.feasible or limits.balanced or path.start is end or parameters.gait.body_shift):
             sets = support_sets(parameters.gait, parameters.excluded)
             check = StabilityCheck(robot, sets, parameters.excluded)
-            fraction = yield from balanced_fraction(check, start, end, fraction)
+            fraction = yield from balanced_fraction(check, path.start, end, fraction)
+            path = path._replace(fraction=fraction, cause=TIPPING)
             if fraction == 0:
                 return TIPPING
-            feasible, cause = fraction, TIPPING
-            goal = start.towards(end, fraction)
-            limits = yield from self._limits(parameters, goal)
-        while not limits.feasible:
-            fraction /= 2
-            if fraction < _LEAST_FRACTION or start is end:
-                return self._cause(parameters, goal, limits)
+            limits = yield from self._limits(parameters, path.at(fraction))
+        found, first = (yield from self._increment(parameters, path, fraction, limits)), None
+        while isinstance(found, Cause):
+            fraction, first = fraction / 2, first or found
+            if fraction < _LEAST_FRACTION or path.start is end:
+                return first
             yield
-            goal = start.towards(end, fraction)
-            limits = yield from self._limits(parameters, goal)
-        timing = yield from cycle_timing(
-            robot, parameters.gait, goal.stand, limits, self._joint_limits, cycle_time=parameters.cycle_time
-        )
-        final = with_stroke_limits(limits, timing.stroke, timing.turning, duty_factor=parameters.gait.duty_factor)
-        yield
-        stepping, on_path = yield from self._path_limits(parameters, start, goal, final)
-        if not on_path.feasible:
-            return self._path_cause(on_path)
-        reached = start.towards(end, feasible)
-        shortfalls = () if end is present else self._shortfalls(parameters, end, reached, cause or UNREACHABLE)
+            limits = yield from self._limits(parameters, path.at(fraction))
+            found = yield from self._increment(parameters, path, fraction, limits)
+        shortfalls = () if end is present else self._shortfalls(parameters, path)
         return StanceTransition(
             parameters=parameters,
-            complete=fraction == feasible,
+            complete=fraction == path.fraction and bool((found.goal.rest == path.at(fraction).rest).all()),
             keeps_posture=end is present,
-            posture=goal.posture,
-            rest=goal.rest,
-            cycle_timing=timing,
-            stepping_limits=stepping,
-            path_limits=on_path,
-            final_limits=final,
-            limitations=(*shortfalls, *_timing_limitations(parameters, timing)),
+            posture=found.goal.posture,
+            rest=found.goal.rest,
+            cycle_timing=found.timing,
+            stepping_limits=found.stepping,
+            path_limits=found.on_path,
+            final_limits=found.final,
+            limitations=(*shortfalls, *_timing_limitations(parameters, found.timing)),
         )
+
+    def _increment(
+        self, parameters: WalkParameters, path: _Path, fraction: float, limits: VelocityLimits
+    ) -> Incremental[_Increment | Cause]:
+        """Find a way to a fraction of a path, with its limits there; or else one on which only the body moves."""
+        goal = path.at(fraction)
+        if not limits.feasible:
+            return self._cause(parameters, goal, limits)
+        found = yield from self._way(parameters, path.start, goal, limits)
+        moves = np.abs(goal.posture - path.start.posture).max() > _LEAST_MOVE
+        if isinstance(found, Cause) and moves and np.abs(goal.rest - path.start.rest).max() > _SAME:
+            # At the end of their reach, feet can step only once the body is back over them.
+            goal = goal._replace(rest=path.start.rest)
+            yield
+            limits = yield from self._limits(parameters, goal)
+            if limits.feasible:
+                found = yield from self._way(parameters, path.start, goal, limits)
+        return found
+
+    def _way(
+        self, parameters: WalkParameters, start: StanceTarget, goal: StanceTarget, limits: VelocityLimits
+    ) -> Incremental[_Increment | Cause]:
+        """Find cycle time and limits on the way to a stance; `limits` are those in it."""
+        gait = parameters.gait
+        timing = yield from cycle_timing(
+            self._robot, gait, goal.stand, limits, self._joint_limits, cycle_time=parameters.cycle_time
+        )
+        final = with_stroke_limits(limits, timing.stroke, timing.turning, duty_factor=gait.duty_factor)
+        yield
+        stepping, on_path = yield from self._path_limits(parameters, start, goal, final)
+        return _Increment(goal, timing, stepping, on_path, final) if on_path.feasible else self._path_cause(on_path)
 
     def _limits(self, parameters: WalkParameters, stance: StanceTarget) -> Incremental[VelocityLimits]:
         """Find the limits in a stance, with its sway or the body shift of its gait."""
@@ -194,14 +239,13 @@ class TransitionPlanner:
             return TIPPING._replace(reason=f"{TIPPING.reason} on the way")
         return Cause("could not stand and step on the way", self._robot.leg_names[limits.limiting_leg])
 
-    def _shortfalls(
-        self, parameters: WalkParameters, asked: StanceTarget, reached: StanceTarget, cause: Cause
-    ) -> tuple[Limitation, ...]:
+    def _shortfalls(self, parameters: WalkParameters, path: _Path) -> tuple[Limitation, ...]:
         """Return what of the commanded stance is not feasible."""
-        geometry = self._robot.geometry
+        reached, geometry = path.at(path.fraction), self._robot.geometry
         mount = geometry.mount_x + 1j * geometry.mount_y
-        missing = float((np.abs(asked.rest - mount) - np.abs(reached.rest - mount)).mean())
-        return stance_limitations(parameters, reached.posture, cause, stance_width=parameters.stance_width - missing)
+        missing = float((np.abs(path.end.rest - mount) - np.abs(reached.rest - mount)).mean())
+        width = parameters.stance_width - missing
+        return stance_limitations(parameters, reached.posture, path.cause or UNREACHABLE, stance_width=width)
 
 
 def _timing_limitations(parameters: WalkParameters, timing: CycleTiming) -> tuple[Limitation, ...]:
