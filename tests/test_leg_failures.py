@@ -351,6 +351,30 @@ def test_a_robot_that_cannot_walk_without_its_legs_sits_down_until_told_otherwis
     assert output.state == "standing"
 
 
+@pytest.mark.parametrize(("name", "lost"), [("strider", (0, 1, 2)), ("makeyourpet", (0, 1)), ("phoenix", (1, 3))])
+def test_legs_that_fail_in_the_middle_of_a_step_let_the_robot_sit_down_smoothly(name, lost):
+    controller = tarsus.RobotController(tarsus.load_robot(name))
+    top, stands = controller._activity.controller.top_speed((1.0, 0.0, 0.0)), tarsus.Command(state="standing")
+    for _ in range(103):
+        controller.step((0.8 * top, 0.0, 0.0), 0.01)
+    failed = controller.leg_failures.failed
+    failed.update(dict.fromkeys(lost, 1))
+    states, bounds, found = [], controller.guard.bounds, [controller.output.angles]
+    for tick in range(1500):
+        if tick == 10:
+            # There is no way back into the middle of a step: it lies down first.
+            failed.clear()
+        output = controller.step(stands if tick >= 10 else (0.8 * top, 0.0, 0.0), 0.01)
+        found.append(output.angles)
+        assert output.interventions == ()
+        if not states or states[-1] != output.state:
+            states.append(output.state)
+        if states[-1] == "standing":
+            break
+    assert states == ["walking", "sitting", "lying", "rising", "standing"]
+    assert (np.abs(np.diff(found, 2, axis=0)).max(axis=0) / 0.01**2 < bounds.acceleration).all()
+
+
 @pytest.mark.parametrize("room", [0.0, 0.0005, 0.01, 0.5])
 def test_joints_that_move_stop_before_their_limits_when_a_leg_is_taken_out(room):
     robot, dt = tarsus.load_robot("phantomx"), 0.005

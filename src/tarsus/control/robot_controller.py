@@ -104,7 +104,7 @@ class RobotController:
         self._command = PersistentCommand(robot)
         # Pose of the activity's ground frame in G; None where they are the same.
         self._base: Pose | None = None
-        self._cycle_time, self._time, self._rate = 0.0, 0.0, 0.0
+        self._cycle_time, self._time, self._rates = 0.0, 0.0, np.zeros((robot.legs, 3))
         walking = self._new_walk()
         self._activity: Activity = walking
         start = requested_state(start)
@@ -177,7 +177,7 @@ class RobotController:
         if self._activity is not activity:
             self._base = ground_frame(self._now.body) @ ground_frame(self._activity.snapshot.body).inverse()
         self._now = self._placed(self._activity.snapshot)
-        self._rate = float(np.abs(self._now.angles - before).max()) / dt
+        self._rates = (self._now.angles - before) / dt
         if isinstance(activity, Walking):
             self._shown_gait, self._cycle_time = activity.gait, activity.controller.cycle_time
         if type(activity) is Walking:
@@ -188,7 +188,7 @@ class RobotController:
     @property
     def _at_rest(self) -> bool:
         still = isinstance(self._activity, Resting) or (isinstance(self._activity, Walking) and self._activity.stands)
-        return still and self._rate < (_AT_REST_DAMAGED if self.leg_failures.failed else _AT_REST)
+        return still and float(np.abs(self._rates).max()) < (_AT_REST_DAMAGED if self.leg_failures.failed else _AT_REST)
 
     # Changes of state.
 
@@ -201,27 +201,27 @@ class RobotController:
         if isinstance(self._activity, Playing):
             self._activity.turn(back=not self._activity.leads_to(goal))
             return
-        change = self._next_change()
-        if change is None or not (self._at_rest or self.leg_failures.sits):
+        change, now = self._next_change(), self._now
+        braking = None if self._at_rest else self.leg_failures.braking(self._activity, now.angles, self._rates)
+        if change is None or not (self._at_rest or braking):
             return
         state, end = change
         try:
-            sequence = self._plan(state)
+            sequence = self._plan(state, now.angles if braking is None else braking.at(braking.duration))
         except TarsusError as error:
             self._activity = way_back(self._activity, end)
             if not isinstance(self._activity, Playing):
                 self._rejected = Limitation(kind=LimitationKind.STATE, cause=f"{state} is not possible: {error}")
             return
-        self._activity = Playing(sequence, state, before=self._activity, base=self._base, end=end)
-        self._base = ground_frame(self._now.body) @ ground_frame(sequence.stages[0].start).inverse()
+        self._activity = Playing(sequence, state, before=self._activity, base=self._base, end=end, braking=braking)
+        self._base = ground_frame(now.body) @ ground_frame(sequence.stages[0].start).inverse()
 
     def _next_change(self) -> tuple[RobotState, RobotState] | None:
         """Return the next change on the way to the state that is wanted; None where there is none that is possible."""
         state = RobotState.STANDING if self._now.state.upright else self._now.state
         return None if self._rejected is not None else next_state(state, self._goal)
 
-    def _plan(self, state: RobotState) -> MotionSequence:
-        angles = self._now.angles
+    def _plan(self, state: RobotState, angles: Float[np.ndarray, "legs 3"]) -> MotionSequence:
         if state is RobotState.RISING:
             return stand_up(self.robot, angles, body_height=self.body_height, swing_height=self.swing_height)
         if state is RobotState.FOLDING:

@@ -12,6 +12,7 @@ from tarsus.control.readings import SensorReadings, ValidReadings
 from tarsus.control.sensing.validation import ReadingsValidator, rejections
 from tarsus.control.sequence import MotionSequence, SequencePlayer, SequenceSample
 from tarsus.control.startup import fold, sit_down
+from tarsus.control.states.braking import Braking
 from tarsus.control.states.robot_state import RobotState
 from tarsus.control.walk_controller import WalkController
 from tarsus.control.walk_state import WalkState
@@ -139,13 +140,24 @@ class Playing:
         ground frame.
     end : RobotState
         The state at the end.
+    braking : Braking, optional
+        How the joints come to rest at the start of the sequence where it begins in the middle of a motion. It does not
+        return there.
     """
 
     def __init__(
-        self, sequence: MotionSequence, state: RobotState, *, before: Activity, base: Pose | None, end: RobotState
+        self,
+        sequence: MotionSequence,
+        state: RobotState,
+        *,
+        before: Activity,
+        base: Pose | None,
+        end: RobotState,
+        braking: Braking | None = None,
     ) -> None:
         self.sequence, self.state, self.before, self.base, self.end = sequence, state, before, base, end
         self._player, self._felt = SequencePlayer(sequence), before.snapshot.felt
+        self.braking, self._time = braking, 0.0
         self.returning = False
 
     def turn(self, *, back: bool) -> None:
@@ -156,6 +168,9 @@ class Playing:
 
     def leads_to(self, goal: RobotState) -> bool:
         """Return whether the end of the sequence is on the way to a state that is wanted."""
+        if self.braking is not None:
+            # There is no way back into the middle of a motion.
+            return True
         return self.end is goal or (self.end is RobotState.LYING and goal is RobotState.FOLDED)
 
     @property
@@ -165,13 +180,24 @@ class Playing:
 
     def step(self, command: Command, dt: float, readings: SensorReadings | None) -> None:  # noqa: ARG002 - as of all activities
         """Advance by one tick."""
-        self._player.step(dt)
+        if self._brakes is None:
+            self._player.step(dt)
+        else:
+            self._time += dt
+
+    @property
+    def _brakes(self) -> Braking | None:
+        """How the joints brake now; None once they are at rest."""
+        return self.braking if self.braking is not None and self._time < self.braking.duration else None
 
     @property
     def snapshot(self) -> Snapshot:
         """The robot now."""
-        now = self._player.now
-        return Snapshot(now.angles, now.body, None, now.contacts, now.belly, self.state, now.stage, felt=self._felt)
+        now, braking = self._player.now, self._brakes
+        angles = now.angles if braking is None else braking.at(self._time)
+        # The feet slide as the joints brake.
+        felt = self._felt or braking is not None
+        return Snapshot(angles, now.body, None, now.contacts, now.belly, self.state, now.stage, felt=felt)
 
 
 class Resting:
@@ -259,7 +285,7 @@ def way_back(activity: Activity, end: RobotState) -> Activity:
         What the robot does; the state that is wanted.
     """
     down = activity.after if isinstance(activity, Resting) and end.upright else None
-    if down is None or type(down.before) is not Walking:
+    if down is None or down.braking is not None or type(down.before) is not Walking:
         return activity
     down.state = RobotState.RISING
     down.turn(back=True)

@@ -14,7 +14,8 @@ from tarsus.control.limitation import Limitation, LimitationKind
 from tarsus.control.readings import CHANNELS, SensorReadings, Vector
 from tarsus.control.sensing.plain_values import as_items, as_vector
 from tarsus.control.sensing.servo_monitor import FailedJoints, ServoMonitor
-from tarsus.control.states.activity import Snapshot, Walking
+from tarsus.control.states.activity import Activity, Snapshot, Walking
+from tarsus.control.states.braking import Braking
 from tarsus.control.states.robot_state import RobotState
 from tarsus.control.walk_controller import WalkController
 from tarsus.errors import TarsusError
@@ -38,8 +39,6 @@ _CAUSE = "the joint has failed: the robot walks on without this leg"
 _FEMUR_UP, _FROM_LIMIT = 1.0, 0.1
 # Fraction of the joints' speed with which the legs move to their new stance, and the least time [s].
 _SPEED_SHARE, _LEAST_TIME = 0.15, 1.0
-# Fraction of the joints' acceleration with which they lose the speed that they have.
-_BRAKES = 0.8
 # Channels that are not measured for each leg.
 _OF_BODY = ("attitude", "angular_rates", "ground")
 
@@ -94,18 +93,14 @@ class ReducedWalking(Walking):
             Limitation(kind=LimitationKind.GAIT, cause=_CAUSE, leg=robot.leg_names[leg], joint=JOINTS[joint])
             for leg, joint in failed.items()
         )
-        self._start, self._end, self._speeds = now.angles, np.array(now.angles), speeds
-        low, high = np.moveaxis(np.asarray(robot.limits), -1, 0)
-        room = np.where(speeds > 0, high - now.angles, now.angles - low).clip(0.0)
-        # At constant deceleration, before their limits.
-        self._stopping = np.abs(speeds) / (_BRAKES * float(self.controller.joint_acceleration.min()))
-        self._stopping = np.minimum(self._stopping, 2 * room / np.abs(speeds).clip(1e-9)).clip(1e-9)
+        self._braking = Braking(robot, now.angles, speeds, self.controller.joint_acceleration)
+        self._end = np.array(now.angles)
         for leg in failed:
             low, high = np.asarray(robot.limits)[leg].T
             self._end[leg] = np.clip(0.0, low[0], high[0]), min(_FEMUR_UP, high[1]), low[2] + _FROM_LIMIT
         self._end[self._legs] = self.controller.angles + self._zero
         speed = _SPEED_SHARE * float(self.controller.joint_speed.min())
-        self._duration = max(float(np.abs(self._end - self._start).max()) / speed, _LEAST_TIME)
+        self._duration = max(float(np.abs(self._end - now.angles).max()) / speed, _LEAST_TIME)
         self._time = 0.0
 
     def step(self, command: Command, dt: float, readings: SensorReadings | None) -> None:
@@ -140,8 +135,7 @@ class ReducedWalking(Walking):
         """The robot now."""
         now = super().snapshot
         share, contacts = min(self._time / self._duration, 1.0), np.zeros(self._robot.legs, dtype=bool)
-        time = np.minimum(self._time, self._stopping)
-        start = self._start + self._speeds * time * (1 - time / self._stopping / 2)
+        start = self._braking.at(self._time)
         angles = start + horizontal_profile(share) * (self._end - start)
         contacts[self._legs] = now.contacts
         if share >= 1:
@@ -247,6 +241,22 @@ class LegFailures:
     def sits(self) -> bool:
         """Whether the robot has to sit down."""
         return bool(self._not_walkable) and self._not_walkable.keys() <= self.failed.keys()
+
+    def braking(
+        self, activity: Activity, angles: Float[np.ndarray, "legs 3"], speeds: Float[np.ndarray, "legs 3"]
+    ) -> Braking | None:
+        """Return how the joints come to rest where the robot has to sit down in the middle of a walk; else None.
+
+        Parameters
+        ----------
+        activity : Activity
+            The present one.
+        angles, speeds : array, shape (legs, 3)
+            Joint angles [rad] and speeds [rad/s] now.
+        """
+        if not (self.sits and isinstance(activity, Walking)):
+            return None
+        return Braking(self._robot, angles, speeds, activity.controller.joint_acceleration)
 
     @property
     def limitations(self) -> tuple[Limitation, ...]:
