@@ -111,6 +111,21 @@ def test_a_servo_that_the_ground_may_stall_is_given_longer_than_one_whose_foot_d
     assert times[1] == times[2] == times[3]
 
 
+def test_a_femur_that_the_ground_pushes_far_up_with_its_foot_on_it_is_stalled_even_if_touch_is_lost_for_a_moment():
+    measured, times = np.zeros((6, 3)), []
+    measured[3, 1] = 0.8
+    for touches in (lambda _: False, lambda _: True, lambda nth: nth % 5 < 4, lambda nth: nth % 5 < 3):
+        monitor, ticks = ServoMonitor(UNKNOWN), 0
+        while not monitor.failed:
+            # Joints are looked at every fourth tick.
+            look(monitor, np.zeros((6, 3)), measured.tolist(), contacts=[touches(ticks // 4)] * 6)
+            ticks += 1
+        times.append(ticks)
+    never, always, but_for_moments, without = times
+    assert always == but_for_moments > 120
+    assert max(never, without) < 50
+
+
 @pytest.mark.parametrize(("touches", "torque", "fails"), [(True, 1.9, False), (False, 1.9, True), (True, 0.1, True)])
 def test_a_servo_that_pulls_as_its_foot_touches_the_ground_is_overloaded_and_has_not_failed(touches, torque, fails):
     monitor, measured = ServoMonitor(np.full((6, 3), 2.0)), np.zeros((6, 3))

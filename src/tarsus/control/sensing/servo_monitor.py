@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections import UserDict, deque
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -36,8 +37,8 @@ _MOST_WEIGHT, _MOST_IDLE, _MOST_PULLING = 6.0, 15.0, 1.0
 _FEMUR = 1
 # Share that counts where the foot touches the ground, which may stall the servo, unless its torque tells that it idles.
 _STALLED = 0.2
-# Where the torque is not measured, a femur that the ground has pushed up by so much [rad], more than nearly any that
-# holds on, and the greatest factor then.
+# Where neither torque nor touch tells, a femur that the ground has pushed up by so much [rad], more than nearly any
+# that holds on, and the greatest factor then.
 _GIVES_WAY, _MOST_GIVING_WAY = 0.6, 30.0
 # A joint whose command moves by so much within a time [rad], [s], and that moves by less than this share of it, is
 # stuck; it has failed once that is so twice in a row.
@@ -96,8 +97,8 @@ class ServoMonitor:
         self._commands: deque[tuple[float, Float[np.ndarray, "legs 3"]]] = deque()
         self._span = 0.0
         self._evidence: Float[np.ndarray, "2 legs 3"] | None = None
-        # Legs that have been found.
-        self._found = set[int]()
+        # Legs that have been found, and those whose feet touched as joints were last looked at.
+        self._found, self._touched = set[int](), set[int]()
         # What was measured and commanded, since joints were last looked at for whether they are stuck.
         self._compared: list[tuple[Float[np.ndarray, "legs 3"], Float[np.ndarray, "legs 3"]]] = []
         self._time, self._since = 0.0, 0.0
@@ -135,6 +136,7 @@ class ServoMonitor:
     ) -> None:
         """Change the evidence against joints by their errors; those of legs that are not measured are NaN."""
         last, self._last = measured if self._last is None else self._last, measured
+        touching = self._touching(valid.contacts)
         for leg in self._found - self.failed.keys():
             # It is to be used again: what has told against it does not count any more.
             assert self._evidence is not None  # what it was found by
@@ -159,8 +161,8 @@ class ServoMonitor:
             moves = (now - before) * math.copysign(1.0, asked - now) > _MOVES * dt
             torque = self._torque(valid, leg, joint)
             idle = torque < _IDLE and not moves
-            gives_way = joint == _FEMUR and over > _GIVES_WAY
-            stalled = not idle and valid.contacts is not None and bool(valid.contacts[leg])
+            stalled = not idle and leg in touching
+            gives_way = joint == _FEMUR and over > _GIVES_WAY and not stalled
             weight = _weight(error, torque, idle=idle, gives_way=gives_way)
             self._evidence[0, leg, joint] += dt * weight * (_STALLED if stalled else 1.0)
         if stuck is not None:
@@ -168,6 +170,14 @@ class ServoMonitor:
         for _, leg, joint in np.argwhere(self._evidence > _FAILED_AFTER).tolist():
             self.failed.setdefault(leg, joint)
             self._found.add(leg)
+
+    def _touching(self, contacts: Sequence[bool | None] | None) -> set[int]:
+        """Return the legs whose feet touch the ground, now or as joints were last looked at.
+
+        A foot that presses on moving ground loses touch for a moment, in which its servo is stalled as before.
+        """
+        before, self._touched = self._touched, {leg for leg, touches in enumerate(contacts or ()) if touches}
+        return before | self._touched
 
     def _torque(self, valid: ValidReadings, leg: int, joint: int) -> float:
         """Return the measured torque of a joint over the stall torque of its servo; NaN where it is unknown."""
