@@ -152,5 +152,5 @@ def test_old_joint_angles_without_age_look_like_failed_servos_and_with_it_do_not
 
     assert "the joint has failed" in walked(PLANT(STRIDER, MJCF), readings=frozen, ticks=200)[2]
     way, _, told = walked(PLANT(STRIDER, MJCF), readings=aged, ticks=200)
-    assert set(told.splitlines()) == {"readings: readings: older than 100 ms"}
+    assert set(told.splitlines()) == {"readings: all channels: older than 100 ms"}
     assert way == pytest.approx(1.0, abs=0.1)

@@ -183,14 +183,15 @@ def test_a_channel_with_every_leg_rejected_is_none():
 @pytest.mark.parametrize("age", [math.nan, -0.01, "old", None, True, -math.inf])
 def test_an_invalid_age_rejects_all_channels(age):
     found = validated(**PLAUSIBLE, age=age)
-    assert found == ValidReadings(rejected=("readings: age is not a number >= 0 s",))
+    assert found == ValidReadings(rejected=("all channels: age is not a number >= 0 s",))
 
 
 def test_old_readings_are_rejected_and_must_settle():
     validator = ReadingsValidator(STRIDER)
     assert validated(validator, **PLAUSIBLE, age=0.1).rejected == ()
     for age in (0.1001, math.inf):
-        assert validated(validator, **PLAUSIBLE, age=age) == ValidReadings(rejected=("readings: older than 100 ms",))
+        found = validated(validator, **PLAUSIBLE, age=age)
+        assert found == ValidReadings(rejected=("all channels: older than 100 ms",))
     for _ in range(3):
         found = validated(validator, **PLAUSIBLE)
         assert (found.contacts, found.attitude, found.forces, found.torques) == (None,) * 4
@@ -202,7 +203,7 @@ def test_old_readings_are_rejected_and_must_settle():
 
 def test_readings_of_a_slow_wire_may_be_four_ticks_old():
     assert validated(dt=0.048, **PLAUSIBLE, age=0.19).rejected == ()
-    assert validated(dt=0.048, **PLAUSIBLE, age=0.2).rejected == ("readings: older than 192 ms",)
+    assert validated(dt=0.048, **PLAUSIBLE, age=0.2).rejected == ("all channels: older than 192 ms",)
 
 
 @pytest.mark.parametrize("channel", FINITE)
@@ -304,14 +305,14 @@ class HostileMapping(dict):
 @pytest.mark.parametrize(
     ("age", "reason"),
     [
-        ({"force": 0.0}, "age of a channel that does not exist"),
-        ({"age": 0.0}, "age of a channel that does not exist"),
-        ({3: 0.0, "forces": 0.0}, "age of a channel that does not exist"),
+        ({"force": 0.0}, "age of one that does not exist"),
+        ({"age": 0.0}, "age of one that does not exist"),
+        ({3: 0.0, "forces": 0.0}, "age of one that does not exist"),
         (HostileMapping(forces=0.0), "age is not a number >= 0 s"),
     ],
 )
 def test_invalid_ages_of_channels_reject_all_channels(age, reason):
-    assert validated(**PLAUSIBLE, age=age) == ValidReadings(rejected=(f"readings: {reason}",))
+    assert validated(**PLAUSIBLE, age=age) == ValidReadings(rejected=(f"all channels: {reason}",))
 
 
 def test_channels_are_the_fields_of_the_readings():
@@ -322,7 +323,7 @@ def test_channels_are_the_fields_of_the_readings():
 @pytest.mark.parametrize("value", ["readings", 3, {"contacts": [True] * 6}, HostileShape(), ValidReadings()])
 def test_an_object_of_another_class_is_rejected(value):
     assert ReadingsValidator(STRIDER).validate(value, 0.01) == ValidReadings(
-        rejected=("readings: not of class SensorReadings",)
+        rejected=("all channels: not of class SensorReadings",)
     )
 
 

@@ -387,6 +387,8 @@ def test_readings_that_tell_nothing_of_the_ground_are_named_where_they_are_rejec
     controller.step(STILL, DT, SensorReadings(contacts=[True] * 6))
     output = controller.step(STILL, DT, SensorReadings(joint_angles=np.full((6, 3), math.nan)))
     assert output.limitations[0].cause == "joint_angles of LF: not finite numbers"
+    output = controller.step(STILL, DT, {"contacts": [True] * 6})
+    assert [each.text() for each in output.limitations] == ["readings: all channels: not of class SensorReadings"]
 
 
 def test_a_foot_stays_where_velocities_have_moved_it_whatever_was_its_target_before():

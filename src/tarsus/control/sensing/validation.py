@@ -143,16 +143,16 @@ class _GroundChannel:
 def _channel_ages(readings: SensorReadings, most: float) -> tuple[str, dict[str, Any]]:
     """Return what is wrong with all readings together, "" if nothing is, and the ages of single channels."""
     if type(readings) is not SensorReadings:
-        return "readings: not of class SensorReadings", {}
+        return "all channels: not of class SensorReadings", {}
     age: Any = readings.age
     if type(age) is float or not hasattr(type(age), "keys"):
-        return _stale("readings", age, most), {}
+        return _stale("all channels", age, most), {}
     try:
         ages = {name: age[name] for name in CHANNELS if name in age}
         unknown = len(age) != len(ages)
     except Exception:  # a foreign mapping may raise anything
-        return f"readings: {_BAD_AGE}", {}
-    return ("readings: age of a channel that does not exist" if unknown else ""), ages
+        return f"all channels: {_BAD_AGE}", {}
+    return ("all channels: age of one that does not exist" if unknown else ""), ages
 
 
 def _stale(name: str, age: Any, most: float) -> str:

@@ -89,7 +89,7 @@ class Walking:
 
     def step(self, command: Command, dt: float, readings: SensorReadings | None) -> None:
         """Advance by one tick."""
-        felt = readings if readings is not None and readings.has_ground_feedback else None
+        felt = readings if getattr(readings, "has_ground_feedback", False) else None
         self.controller.step(command, dt, readings=felt)
         self.measured = self._validator.validate(readings, dt) if felt is None else self.controller.measured
         self._rejected = rejections(self.measured) if felt is None else []
