@@ -1,6 +1,6 @@
 """Write the tables of faults in ground.md: what bad readings cost, and how a robot walks on without a leg.
 
-python docs/sensor_faults.py --seeds 5
+python docs/sensor_faults.py --seeds 5 --jobs 2
 python docs/sensor_faults.py --robots strider --faults hobby --print
 """
 
@@ -8,14 +8,14 @@ from __future__ import annotations
 
 import argparse
 import dataclasses
+import itertools
 import math
-from collections.abc import Callable
 from typing import Any
 
 import numpy as np
 
 import tarsus
-from page_tables import Several, write_tables
+from page_tables import Several, measured, write_tables
 from rough_ground import GROUNDS, PAGE, RANDOM, WAY
 from tarsus.simulation import SensorSuite, SimulatedPlant
 from tarsus.simulation.sensors.suite import FootSwitch, Sensor
@@ -43,6 +43,8 @@ STUCK: dict[str, tuple[int, bool]] = {
     "switch of the front left foot open": (0, False),
     "switch of the middle left foot open": (1, False),
     "switch of the front left foot closed": (0, True),
+    "50 ms late, switch of the front left foot open": (0, False),
+    "50 ms late, switch of the middle right foot open": (4, False),
 }
 LAG = "50 ms of servo lag"
 FAULTS = ("none", *SUITES, LAG, *STUCK)
@@ -52,7 +54,8 @@ def walk(name: str, ground: str, fault: str, seed: int) -> tuple[float, float]:
     """Return the way of one walk at half the top speed, over the commanded one, and the RMS of its tilt [deg]."""
     robot = tarsus.load_robot(name)
     speed, dt = 0.5 * tarsus.WalkController(robot).top_speed((1, 0, 0)), 0.01
-    setup: dict[str, Any] = {"terrain": GROUNDS[ground](seed), "sensors": SUITES.get(fault, IDEAL), "seed": seed}
+    sensors = LATE if fault.startswith("50 ms late") else SUITES.get(fault, IDEAL)
+    setup: dict[str, Any] = {"terrain": GROUNDS[ground](seed), "sensors": sensors, "seed": seed}
     plant = SimulatedPlant(robot, **setup)
     if fault == LAG:
         servos = [[dataclasses.replace(each, delay=each.delay + 0.05) for each in row] for row in plant.servos]
@@ -74,15 +77,26 @@ def walk(name: str, ground: str, fault: str, seed: int) -> tuple[float, float]:
     return way / (speed * dt * ticks), math.degrees(math.sqrt(np.mean(np.square(tilts))))
 
 
-def table(robot: str, faults: list[str], seeds: int, cell: Callable[[list[tuple[float, float]]], str]) -> str:
-    """Return the table of a robot: a row for each fault, a column for each ground."""
+def fault_tables(asked: argparse.Namespace) -> str:
+    """Return the tables of robots, one row a fault: medians of way and tilt on each ground."""
+    cells = list(itertools.product(asked.robots, asked.faults, GROUND))
+    seeds = [asked.seeds if cell[2].startswith(RANDOM) or cell[1] in SUITES else 1 for cell in cells]
+    walks = [(*cell, seed) for cell, draws in zip(cells, seeds, strict=True) for seed in range(draws)]
+    found: dict[tuple[str, str, str], list[tuple[float, float]]] = {cell: [] for cell in cells}
+    for (*cell, _), outcome in zip(walks, measured(_walk, walks, asked.jobs), strict=True):
+        found[tuple(cell)].append(outcome)
+    return "\n\n".join(_fault_table(robot, asked.faults, found) for robot in asked.robots)
+
+
+def _walk(job: tuple[str, str, str, int]) -> tuple[float, float]:
+    robot, fault, ground, seed = job
+    return walk(robot, ground, fault, seed)
+
+
+def _fault_table(robot: str, faults: list[str], found: dict[tuple[str, str, str], list[tuple[float, float]]]) -> str:
     lines = [f"| {robot} | {' | '.join(GROUND)} |", f"|---|{'---|' * len(GROUND)}"]
     for fault in faults:
-        cells = []
-        for ground in GROUND:
-            draws = seeds if ground.startswith(RANDOM) or fault in SUITES else 1
-            cells.append(cell([walk(robot, ground, fault, seed) for seed in range(draws)]))
-        lines.append(f"| {fault} | {' | '.join(cells)} |")
+        lines.append(f"| {fault} | {' | '.join(medians(found[robot, fault, ground]) for ground in GROUND)} |")
     return "\n".join(lines)
 
 
@@ -138,11 +152,13 @@ def medians(found: list[tuple[float, float]]) -> str:
 def tables(asked: argparse.Namespace) -> dict[str, str]:
     """Measure, and return the tables."""
     return {
-        "sensor faults": "\n\n".join(table(robot, asked.faults, asked.seeds, medians) for robot in asked.robots),
-        "leg failures": failure_table(["strider", "phantomx", "makeyourpet"]),
+        "sensor faults": fault_tables(asked),
+        "leg failures": failure_table(asked.robots),
     }
 
 
 if __name__ == "__main__":
     faults = Several(FAULTS, choices=FAULTS)
-    write_tables(__doc__, PAGE, tables, robots=Several(["strider"]), faults=faults, seeds=3)
+    write_tables(
+        __doc__, PAGE, tables, robots=Several(["strider", "phantomx", "makeyourpet"]), faults=faults, seeds=3, jobs=1
+    )
