@@ -1,7 +1,7 @@
 """Write the tables of faults in ground.md: what bad readings cost, and how a robot walks on without a leg.
 
 python docs/sensor_faults.py --seeds 5 --jobs 2
-python docs/sensor_faults.py --robots strider --faults hobby --print
+python docs/sensor_faults.py --robots strider --faults 'hobby sensors' --print
 """
 
 from __future__ import annotations
