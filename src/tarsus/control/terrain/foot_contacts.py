@@ -164,45 +164,52 @@ class FootContacts:
         ----------
         footing : Footing
             The feet that should stand.
-        tilt : (roll, pitch) or None
-            Measured, off the attitude to keep [rad]; None where it is not.
-        dt : float
-            Time since the last tick [s].
-        low : sequence of bool, optional
-            Which feet may have lifted the body, and others; those that should stand by default.
-        depths : sequence of float, optional
-            How far below the expected ground feet are [m]: of those that may have lifted the body, the deepest has.
+        tilt, dt : (roll, pitch) or None, float
+            Measured, off the attitude to keep [rad], None where it is not; time since the last tick [s].
+        low, depths : sequence of bool, sequence of float, optional
+            Which feet may have lifted the body, and others, by default those that should stand; how far below the
+            expected ground they are [m]: the deepest has lifted it.
         """
-        places, down = footing.places, footing.down
-        shaken = any(on and 0.0 < time <= _GRACE for on, time in zip(down, self._without, strict=True))
+        self._follow(footing.places, tilt)
+        alone = self._lifting_alone(footing._replace(down=list(low or footing.down)), tilt)
+        if lifts := alone or self._lifting(footing.down, tilt):
+            leg = max(lifts, key=(depths or self._without).__getitem__)
+            self._evidence[leg] += dt * lifts[leg]
+        if tilt is not None:
+            self._balance(footing, tilt, dt)
+
+    def _follow(self, places: Sequence[complex], tilt: RollPitch | None) -> None:
+        """Find by how much the body has sunk at each foot since that lost its contact."""
         first, self._last = self._last is None, tilt or self._last
         last = self._last or (0.0, 0.0)
         for leg, place in enumerate(places):
             if first or self._without[leg] <= 0.0:
                 self._tilts[leg] = last
             self.sunk[leg] = sunk_at(place, last, self._tilts[leg])
-        alone = [] if tilt is None else self._lifting_alone(footing._replace(down=list(low or down)), tilt)
-        least = math.inf if tilt is None else self._scale * _LIFTS
-        shakes = [on and shaken and self._without[leg] > _GRACE for leg, on in enumerate(down)]
-        lifting = [leg for leg, on in enumerate(shakes) if on and (tilt is None or -self.sunk[leg] >= least)]
-        if candidates := alone or lifting:
-            leg = max(candidates, key=(depths or self._without).__getitem__)
-            self._evidence[leg] += dt * (_MOST_LIFT if alone else min(max(-self.sunk[leg] / least, 1.0), _MOST_LIFT))
-        if tilt is not None:
-            self._balance(footing, tilt, dt)
 
-    def _lifting_alone(self, footing: Footing, tilt: RollPitch) -> list[int]:
-        """Return the legs whose feet have lifted the body that the others do not hold, but would together with one."""
+    def _lifting(self, down: Sequence[bool], tilt: RollPitch | None) -> dict[int, float]:
+        """Return for legs whose feet have lifted the body, while others lost contact, for how much that counts."""
+        if not any(on and 0.0 < time <= _GRACE for on, time in zip(down, self._without, strict=True)):
+            return {}
+        legs = [leg for leg, on in enumerate(down) if on and self._without[leg] > _GRACE]
+        if tilt is None:
+            return dict.fromkeys(legs, 1.0)
+        lifts = {leg: -self.sunk[leg] / (self._scale * _LIFTS) for leg in legs}
+        return {leg: min(lift, _MOST_LIFT) for leg, lift in lifts.items() if lift >= 1.0}
+
+    def _lifting_alone(self, footing: Footing, tilt: RollPitch | None) -> dict[int, float]:
+        """Return the same for legs whose feet have lifted the body that the others do not hold, but would with one."""
         places, down, centre, _ = footing
         bears = [places[leg] for leg, on in enumerate(down) if on and self._bears(leg)]
         without = [leg for leg, on in enumerate(down) if on and not self._bears(leg)]
         least = self._scale * _LIFTS_ALONE
         # A robot that sinks at another foot is not held up by one of them.
         sinks = any(self.sunk[leg] > least / 2 for leg in without)
-        if not without or sinks or len(bears) < _FEWEST or holds(bears, centre):
-            return []
+        if tilt is None or not without or sinks or len(bears) < _FEWEST or holds(bears, centre):
+            return {}
         lifts = [leg for leg in without if min(-self.sunk[leg], -sunk_at(places[leg], tilt)) > least]
-        return [leg for leg in lifts if self._without[leg] > _UNHELD and holds([*bears, places[leg]], centre)]
+        holding = [leg for leg in lifts if self._without[leg] > _UNHELD and holds([*bears, places[leg]], centre)]
+        return dict.fromkeys(holding, _MOST_LIFT)
 
     def _balance(self, footing: Footing, tilt: RollPitch, dt: float) -> None:
         """Find a switch that stays open: a robot that does not tip stands on a foot that it does not feel."""
