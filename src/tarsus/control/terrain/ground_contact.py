@@ -205,4 +205,6 @@ def not_sunk(state: GaitState, body: BodyMotion, footing: Footing, *, tips: bool
         deep |= on and (off + max(-sunk_at(place, body.off), 0.0) <= -most or hangs)
         low.append(on and off < high)
     none = [False] * len(low)
-    return (none, none) if deep else (low if low == footing.down else none, low)
+    if deep:
+        return none, none
+    return low if low == footing.down else none, low
