@@ -38,7 +38,7 @@ SUITES: dict[str, Any] = {
     "5 % of contacts wrong": with_sensors(contacts=FootSwitch(flips=0.05)),
     "attitude with 1 deg of noise and bias": with_sensors(attitude=ONE_DEGREE),
 }
-# The switch that is stuck, and what it reads.
+# The switch that is stuck, and what it reads; a name with a comma begins with that of the sensors.
 STUCK: dict[str, tuple[int, bool]] = {
     "switch of the front left foot open": (0, False),
     "switch of the middle left foot open": (1, False),
@@ -54,7 +54,7 @@ def walk(name: str, ground: str, fault: str, seed: int) -> tuple[float, float]:
     """Return the way of one walk at half the top speed, over the commanded one, and the RMS of its tilt [deg]."""
     robot = tarsus.load_robot(name)
     speed, dt = 0.5 * tarsus.WalkController(robot).top_speed((1, 0, 0)), 0.01
-    sensors = LATE if fault.startswith("50 ms late") else SUITES.get(fault, IDEAL)
+    sensors = SUITES.get(fault.partition(",")[0], IDEAL)
     setup: dict[str, Any] = {"terrain": GROUNDS[ground](seed), "sensors": sensors, "seed": seed}
     plant = SimulatedPlant(robot, **setup)
     if fault == LAG:
