@@ -52,6 +52,26 @@ def stepped(
     return missing
 
 
+def as_commanded(leg):
+    return 0j
+
+
+def touching_in_swing(phase, height, foot):
+    """State, body and timing of a walk whose first foot swings, and touches the ground again since a moment."""
+    setup, lifted = setup_of("strider"), np.arange(6) == 0
+    state = begun(setup, rest_of("strider"))._replace(
+        down=~lifted,
+        swing_phase=np.where(lifted, phase, 0.0),
+        ground_height=np.where(lifted, height, 0.0),
+        felt=[foot, *[FeltFoot()] * 5],
+    )
+    body = tarsus.WalkController(setup.robot)._walk.ground.body
+    for touches in (False, True):
+        for _ in range(10):
+            body.contacts.step([touches, *[True] * 5], state.down.tolist(), 0.01)
+    return state, body, StepTiming.of(setup.gait, 1.0)
+
+
 def seen(missing, holes, edge=1.0):
     missing.sees(SimpleNamespace(holes=holes, is_hole=lambda place: place.real > edge), REST)
 
@@ -304,11 +324,16 @@ def test_feet_over_their_commands_are_known_where_angles_are_measured():
     odometry, g, commanded = LegOdometry(robot), robot.geometry, np.zeros((6, 3))
     # The legs are straight out; measured, they are turned up at their femur joints.
     higher = ValidReadings(joint_angles=((0.0, 0.1, 0.0),) * 6)
-    rise = (g.femur[0] + g.tibia[0]) * np.sin(0.1)
-    assert odometry.raised([0, 3], higher, commanded) == pytest.approx({0: rise, 3: rise})
+    length = g.femur[0] + g.tibia[0]
+    back, rise = length * (np.cos(0.1) - 1), length * np.sin(0.1)
+    off = {leg: (back * np.cos(yaw), back * np.sin(yaw), rise) for leg, yaw in enumerate(robot.mount_yaw)}
+    found = odometry.feet_off_commanded([0, 3], higher, commanded)
+    assert found.keys() == {0, 3}
+    for leg in found:
+        np.testing.assert_allclose(found[leg], off[leg], atol=1e-12)
     unknown = ValidReadings(joint_angles=(None, *higher.joint_angles[1:]))
-    assert odometry.raised([0, 3], unknown, commanded) == pytest.approx({3: rise})
-    assert odometry.raised([0, 3], ValidReadings(), commanded) == {}
+    assert odometry.feet_off_commanded([0, 3], unknown, commanded).keys() == {3}
+    assert odometry.feet_off_commanded([0, 3], ValidReadings(), commanded) == {}
 
 
 @pytest.mark.no_cover
@@ -803,39 +828,53 @@ def test_the_edge_is_where_the_step_leads_wherever_its_foothold_was_chosen():
 def test_while_the_walk_waits_a_foot_on_its_way_down_stands_on_lower_ground_that_it_meets(
     pace, phase, speed, height, lands
 ):
-    setup, rest = setup_of("strider"), rest_of("strider")
-    timing, state, lifted = StepTiming.of(setup.gait, 1.0), begun(setup, rest), np.arange(6) == 0
-    state = state._replace(
-        down=~lifted,
-        swing_phase=np.where(lifted, phase, 0.0),
-        ground_height=np.where(lifted, height, 0.0),
-        felt=[FeltFoot(speed=speed, top=0.03, top_phase=0.42), *[FeltFoot()] * 5],
+    state, body, timing = touching_in_swing(phase, height, FeltFoot(speed=speed, top=0.03, top_phase=0.42))
+    _, landed = met_ground(
+        state, body, MissingGround(NAMES), stopped=[], off_commanded=as_commanded, timing=timing, pace=pace
     )
-    body = tarsus.WalkController(setup.robot)._walk.ground.body
-    for touches in (False, True):
-        for _ in range(10):
-            body.contacts.step([touches, *[True] * 5], state.down.tolist(), 0.01)
-    _, landed = met_ground(state, body, MissingGround(NAMES), stopped=[], timing=timing, pace=pace)
     assert landed == [0] * lands
+
+
+@pytest.mark.parametrize(("phase", "tries"), [(0.5, 0), (0.6, 0), (0.7, 1)])
+def test_a_foot_that_rises_along_an_obstacle_does_not_stand_on_it(phase, tries):
+    state, body, timing = touching_in_swing(phase, 0.02, FeltFoot())
+    rising = FeltFoot(top=0.03, top_phase=0.65, drawn_back=complex(state.foot[0]) - 0.008)
+    state = state._replace(foothold=state.foothold + 0.05, felt=[rising, *state.felt[1:]])
+    missing = MissingGround(NAMES)
+    after, landed = met_ground(state, body, missing, stopped=[], off_commanded=as_commanded, timing=timing, pace=1.0)
+    assert landed == [0] * tries
+    assert list(missing.places) == [0] * tries
+    assert after.down[0] == bool(tries)
+
+
+def test_a_foot_that_collides_is_drawn_back_from_where_it_is_measured():
+    state, body, timing = touching_in_swing(0.3, 0.02, FeltFoot(top=0.03, top_phase=0.42))
+    state = state._replace(foothold=state.foothold + 0.05)
+    for lag in (0.0, 0.03):
+        after, _ = met_ground(
+            state,
+            body,
+            MissingGround(NAMES),
+            stopped=[],
+            off_commanded=lambda _, lag=lag: -lag,
+            timing=timing,
+            pace=1.0,
+        )
+        assert after.felt[0].drawn_back == pytest.approx(state.foot[0] - lag - 0.008)
+    # The next time it is drawn back by 40 mm from where it is.
+    again = state._replace(swing_phase=state.swing_phase + 0.6, felt=after.felt)
+    missing = MissingGround(NAMES)
+    met_ground(again, body, missing, stopped=[0], off_commanded=lambda _: -0.03, timing=timing, pace=1.0)
+    start, _ = missing.obstacles.stopped(0, 0j, 0j)
+    assert start == pytest.approx(state.in_heading(complex(state.foot[0]) - 0.03 - 0.04))
 
 
 @pytest.mark.parametrize(("height", "sunk", "off"), [(0.03, 0.0, 0.03), (0.03, 0.02, 0.01), (-0.03, 0.02, 0.03)])
 def test_ground_that_a_foot_meets_sooner_as_the_body_tips_towards_it_is_not_rough(height, sunk, off):
-    setup, rest = setup_of("strider"), rest_of("strider")
-    timing, state, lifted = StepTiming.of(setup.gait, 1.0), begun(setup, rest), np.arange(6) == 0
-    state = state._replace(
-        down=~lifted,
-        swing_phase=np.where(lifted, 0.8, 0.0),
-        ground_height=np.where(lifted, height, 0.0),
-        felt=[FeltFoot(speed=-0.1, top=0.03, top_phase=0.42), *[FeltFoot()] * 5],
-    )
-    body = tarsus.WalkController(setup.robot)._walk.ground.body
-    for touches in (False, True):
-        for _ in range(10):
-            body.contacts.step([touches, *[True] * 5], state.down.tolist(), 0.01)
+    state, body, timing = touching_in_swing(0.8, height, FeltFoot(speed=-0.1, top=0.03, top_phase=0.42))
     body.contacts.sunk[0], expected = sunk, Roughness(tarsus.GroundAdaptation())
     expected.landed(off)
-    met_ground(state, body, MissingGround(NAMES), stopped=[], timing=timing, pace=1.0)
+    met_ground(state, body, MissingGround(NAMES), stopped=[], off_commanded=as_commanded, timing=timing, pace=1.0)
     assert body.roughness.value == pytest.approx(expected.value)
 
 

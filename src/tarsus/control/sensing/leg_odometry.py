@@ -127,8 +127,10 @@ class LegOdometry:
         wanted, most = _GAIN * self.behind, _MOST * speed
         return wanted * min(1.0, most / max(abs(wanted), 1e-12))
 
-    def raised(self, legs: list[int], valid: ValidReadings, angles: Float[np.ndarray, "legs 3"]) -> dict[int, float]:
-        """Return by how much feet are higher than commanded, of those of some legs whose angles are measured [m].
+    def feet_off_commanded(
+        self, legs: list[int], valid: ValidReadings, angles: Float[np.ndarray, "legs 3"]
+    ) -> dict[int, tuple[float, float, float]]:
+        """Return how far feet are from where they are commanded, of those of some legs whose angles are measured.
 
         Parameters
         ----------
@@ -136,13 +138,19 @@ class LegOdometry:
             The legs; the readings.
         angles : array, shape (legs, 3)
             Commanded joint angles [rad].
+
+        Returns
+        -------
+        dict of int to (float, float, float)
+            By leg, in the body's frame [m].
         """
         measured, wanted = valid.joint_angles, angles.tolist()
         if not (legs and measured):
             return {}
         found = self._solver.feet([each or asked for each, asked in zip(measured, wanted, strict=True)])
-        feet = list(zip(found, self._solver.feet(wanted), strict=True))
-        return {leg: feet[leg][0][2] - feet[leg][1][2] for leg in legs if measured[leg] is not None}
+        feet = zip(found, self._solver.feet(wanted), strict=True)
+        off = [(x - wanted_x, y - wanted_y, z - wanted_z) for (x, y, z), (wanted_x, wanted_y, wanted_z) in feet]
+        return {leg: off[leg] for leg in legs if measured[leg] is not None}
 
     def _note_slip(self, feet: list[complex], moved: dict[int, complex], dt: float) -> None:
         """Take note of what the motion over each foot differs by from that of a body that turns over all of them."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import cmath
+from functools import partial
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -43,6 +44,7 @@ _LEAVING = 0.1
 _GENTLE, _NEAR = 0.02, 0.004
 # A foot that goes down faster has not come to the end of its reach, which sinks with the body [m/s].
 _FALLS = 0.1
+_AS_COMMANDED = (0.0, 0.0, 0.0)
 
 
 class FeltGround:
@@ -132,12 +134,20 @@ class FeltGround:
         if self.missing.stranded and all(down):
             state = timing.with_first_lift(state, self.missing.stranded[0])
         pace = self.support.pace
-        state, landed = met_ground(state, self.body, self.missing, stopped=stopped, timing=timing, pace=pace)
+        off = partial(self._off_commanded, state)
+        state, landed = met_ground(
+            state, self.body, self.missing, stopped=stopped, off_commanded=off, timing=timing, pace=pace
+        )
         waits = self.missing.refuses and self.support.halts
         if self.missing.tips or self.condition.in_air or waits:
             state, swung = put_down(state, timing=timing, pace=pace)
             landed += swung
         return state, landed
+
+    def _off_commanded(self, state: GaitState, leg: int) -> complex:
+        """Return how far a foot is from where it is commanded, in G [m]; 0 where that is not measured."""
+        x, y, _ = self.body.odometry.feet_off_commanded([leg], self.measured, self._commanded).get(leg, _AS_COMMANDED)
+        return complex(x, y) * cmath.exp(1j * (state.yaw + float(state.moved_posture[5])))
 
     def inputs(self, tick: TickState, transitions: TransitionExecutor, excluded: list[int], dt: float) -> FeltInputs:
         """Return what the feet and the body do in a tick.
@@ -244,11 +254,11 @@ class FeltGround:
         """Return the feet that should stand and feel nothing."""
         contacts, found = self.contacts, list[Search]()
         legs = [leg for leg, on in enumerate(footing.down) if on and not stands[leg] and contacts.is_known(leg)]
-        higher = self.body.odometry.raised(legs, self.measured, self._commanded)
+        off = self.body.odometry.feet_off_commanded(legs, self.measured, self._commanded)
         for leg in legs:
             place, foot = footing.places[leg], state.felt[leg]
             depth = self.ground.lowest_near(place) + state.elevation - float(state.ground_height[leg])
-            known = foot.speed < -_FALLS, contacts.seeks(leg), contacts.sunk[leg], higher.get(leg, 0.0)
+            known = foot.speed < -_FALLS, contacts.seeks(leg), contacts.sunk[leg], off.get(leg, _AS_COMMANDED)[2]
             found.append(Search(leg, depth, *known, sunk_at(place, self.body.off)))
         return found
 

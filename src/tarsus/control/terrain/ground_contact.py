@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import cmath
 import math
+from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
 from tarsus.control.sensing.swing_monitor import USUAL_LAG
@@ -41,7 +42,14 @@ _HIGH = 0.03
 
 
 def met_ground(
-    state: GaitState, body: BodyMotion, missing: MissingGround, *, stopped: list[int], timing: StepTiming, pace: float
+    state: GaitState,
+    body: BodyMotion,
+    missing: MissingGround,
+    *,
+    stopped: list[int],
+    off_commanded: Callable[[int], complex],
+    timing: StepTiming,
+    pace: float,
 ) -> tuple[GaitState, list[int]]:
     """Return the gait state in which feet that meet ground have landed or rise again, and which have landed.
 
@@ -51,6 +59,8 @@ def met_ground(
         The gait state; contacts, expected ground and reach. Its roughness takes note of footholds and collisions.
     missing, stopped : MissingGround, list of int
         Decides where feet that are stopped again try next; legs that are stopped on their way.
+    off_commanded : callable
+        Returns how far the foot of a leg is from where it is commanded, in G [m].
     timing, pace : StepTiming, float
         The gait and its frequency; rate of the steps, 0 to 1.
     """
@@ -61,18 +71,20 @@ def met_ground(
         if down or phase <= _CLEAR:
             rises = foot.top > float(state.ground_height[leg]) or foot.slide
             if (contacts.feels(leg) or leg in stopped) and missing.tries(leg, places[leg]) and not rises:
-                state = _trying_again(state, leg, missing, reach, state)
+                state = _trying_again(state, leg, missing, reach, state, off_commanded(leg))
             continue
         leaves = missing.obstacles.leaves(state.in_heading(complex(state.foothold[leg])) - places[leg])
         if not leaves and _collides_again(
             state, leg, side=contacts.feels(leg) and contacts.lifted[leg], stopped=leg in stopped, scale=reach.scale
         ):
-            state = _trying_again(state, leg, missing, reach, _landed(state, leg, timing, pace))
+            state = _trying_again(state, leg, missing, reach, _landed(state, leg, timing, pace), off_commanded(leg))
             landed.append(leg)
         elif phase > _LANDING or (pace < HALTING and _stands_below(state, leg, contacts, scale=reach.scale)):
-            # Contact that has not ceased since lift-off tells nothing: the foot lands where ground is expected.
+            # Contact that has not ceased since lift-off tells nothing: the foot lands where ground is expected. Nor
+            # does that of a foot that rises along an obstacle.
             tells = contacts.lifted[leg] and not contacts.is_open(leg)
-            if tells and not contacts.touches(leg):
+            rises = foot.drawn_back is not None and phase <= foot.top_phase
+            if tells and (rises or not contacts.touches(leg)):
                 continue
             # It touched the ground a moment ago, when it was higher.
             over = float(state.ground_height[leg]) - elevation - tells * contacts.age * min(foot.speed, 0.0)
@@ -86,7 +98,9 @@ def met_ground(
                 landed.append(leg)
         elif (meets or leg in stopped) and not leaves and _collides(state, leg, contacts, scale=reach.scale):
             body.roughness.collided()
-            state = _rising_again(state, leg, _highest(state, leg, reach), timing, scale=reach.scale)
+            state = _rising_again(
+                state, leg, _highest(state, leg, reach), timing, off_commanded(leg), scale=reach.scale
+            )
     return state, landed
 
 
@@ -146,8 +160,10 @@ def _collides_again(state: GaitState, leg: int, *, side: bool, stopped: bool, sc
     return stopped if abs(foot - start) > scale * (_DRAWN_BACK + _PAST) else side
 
 
-def _rising_again(state: GaitState, leg: int, highest: float, timing: StepTiming, *, scale: float) -> GaitState:
-    """Return the state with a foot that draws back from an obstacle and rises higher."""
+def _rising_again(
+    state: GaitState, leg: int, highest: float, timing: StepTiming, off: complex, *, scale: float
+) -> GaitState:
+    """Return the state with a foot that draws back from an obstacle, off where it is commanded, and rises higher."""
     height, foot = float(state.ground_height[leg]), complex(state.foot[leg])
     top = state.felt[leg].top
     way = complex(state.foothold[leg]) - foot
@@ -156,7 +172,7 @@ def _rising_again(state: GaitState, leg: int, highest: float, timing: StepTiming
         leg,
         top=min((height if math.isnan(top) else max(top, height)) + scale * _HIGHER, max(highest, height)),
         top_phase=min(float(state.swing_phase[leg]) + _RISING / timing.swing_time, 1.0),
-        drawn_back=foot - scale * _DRAWN_BACK * way / max(abs(way), 1e-9),
+        drawn_back=foot + off - scale * _DRAWN_BACK * way / max(abs(way), 1e-9),
     )
     return state._replace(felt=felt)
 
@@ -167,12 +183,14 @@ def _highest(state: GaitState, leg: int, reach: Reach) -> float:
     return state.elevation + reach.highest_on_way(leg, start, end)
 
 
-def _trying_again(state: GaitState, leg: int, missing: MissingGround, reach: Reach, after: GaitState) -> GaitState:
+def _trying_again(
+    state: GaitState, leg: int, missing: MissingGround, reach: Reach, after: GaitState, off: complex
+) -> GaitState:
     """Return the state with a foot that is stopped again: it is drawn back, and tries again while the walk stands."""
     height, turn = float(state.ground_height[leg]), cmath.exp(1j * state.yaw)
     foot, goal = (state.in_heading(complex(places[leg])) for places in (state.foot, state.foothold))
     top = min(height + reach.scale * _HIGHER, max(_highest(state, leg, reach), height))
-    back = missing.stopped(leg, foot, goal)
+    back = missing.stopped(leg, foot + off / turn, goal)
     slide = reach.scale * _DRAWS_BACK * turn * back / max(abs(back), 1e-9)
     return after._replace(felt=_with(after.felt, leg, speed=0.0, acceleration=0.0, top=top, slide=slide))
 
