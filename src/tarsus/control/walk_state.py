@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from enum import StrEnum
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -14,7 +13,7 @@ from tarsus.control.walk.state import GaitState
 if TYPE_CHECKING:
     from jaxtyping import Float
 
-__all__ = ["WALK_STATE_TRANSITIONS", "TickState", "WalkState", "next_walk_state"]
+__all__ = ["TickState", "WalkState", "next_walk_state"]
 
 
 class WalkState(StrEnum):
@@ -32,21 +31,10 @@ class WalkState(StrEnum):
     SEARCHING = "searching"
 
 
-_MOVING = frozenset(WalkState) - {WalkState.STANDING}
-WALK_STATE_TRANSITIONS: Mapping[WalkState, frozenset[WalkState]] = {
-    WalkState.STANDING: frozenset({WalkState.WALKING, WalkState.STOPPING}),
-    WalkState.WALKING: _MOVING,
-    WalkState.STOPPING: _MOVING | {WalkState.STANDING},
-    WalkState.CHANGING_GAIT: _MOVING,
-    WalkState.SEARCHING: _MOVING,
-}
-"""The states that may follow each state; only a robot that stops comes to stand."""
-
-
 def next_walk_state(
     state: WalkState, *, follows_twist: bool, at_rest: bool, changes_gait: bool = False, searches: bool = False
 ) -> WalkState:
-    """Return the state after the present one.
+    """Return the state after the present one; only a robot that stops comes to stand.
 
     Parameters
     ----------
@@ -60,16 +48,13 @@ def next_walk_state(
         Whether all feet touch down for another gait; whether a foot searches for ground.
     """
     if searches:
-        following = WalkState.SEARCHING
-    elif changes_gait:
-        following = WalkState.CHANGING_GAIT
-    elif follows_twist:
-        following = WalkState.WALKING
-    else:
-        following = WalkState.STANDING if at_rest else WalkState.STOPPING
-    allowed = following is state or following in WALK_STATE_TRANSITIONS[state]
-    # From any other state, a robot at rest passes through STOPPING.
-    return following if allowed else WalkState.STOPPING
+        return WalkState.SEARCHING
+    if changes_gait:
+        return WalkState.CHANGING_GAIT
+    if follows_twist:
+        return WalkState.WALKING
+    # A walk that has just ended stops first, even if its feet are at rest already.
+    return WalkState.STANDING if at_rest and state is WalkState.STOPPING else WalkState.STOPPING
 
 
 class TickState(NamedTuple):
