@@ -17,7 +17,7 @@ from tarsus.control.walk.state import GaitState
 if TYPE_CHECKING:
     from jaxtyping import Float
 
-__all__ = ["TwistGrant", "TwistLimiter", "TwistRequest", "granted_twist", "leads_towards"]
+__all__ = ["TwistGrant", "TwistLimiter", "TwistRequest", "leads_towards"]
 
 # Motion within an angle of this cosine of a way leads there.
 _TOWARDS = 0.3
@@ -104,20 +104,3 @@ def leads_towards(velocity: complex, way: complex) -> bool:
         The velocity, and the direction of the way, x + iy in the same frame; without either, nothing is led to.
     """
     return (velocity * way.conjugate()).real > _TOWARDS * abs(velocity * way)
-
-
-_WHOLE_TWIST = TwistGrant()
-
-
-def granted_twist(limiters: Sequence[TwistLimiter], request: TwistRequest) -> TwistGrant:
-    """Return what all twist limiters leave of a commanded twist.
-
-    Parameters
-    ----------
-    limiters, request : sequence of TwistLimiter, TwistRequest
-        The limiters, in their order; the commanded twist, and what decides on it.
-    """
-    grant = _WHOLE_TWIST
-    for limiter in limiters:
-        grant = limiter.limit(request, grant)
-    return grant

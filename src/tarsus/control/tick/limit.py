@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from tarsus.control.command import Command
 from tarsus.control.limiter.lost_time import LostTime
 from tarsus.control.limiter.pending_transition import PendingTransitionLimiter
-from tarsus.control.limiter.protocol import TwistLimiter, TwistRequest, granted_twist
+from tarsus.control.limiter.protocol import TwistGrant, TwistLimiter, TwistRequest
 from tarsus.control.limiter.reference_governor import GovernorLimiter
 from tarsus.control.limiter.workspace import WorkspaceLimiter
 from tarsus.control.tick.components import WalkComponents
@@ -62,7 +62,9 @@ def limited(
     """
     transitions, standing = walk.transitions, tick.standing
     state = transitions.timing.with_first_lift(tick.gait, 0) if standing else tick.gait
-    grant = granted_twist(limiters, TwistRequest(tuple(command.twist), dt, state, tick.twist))
+    request, grant = TwistRequest(tuple(command.twist), dt, state, tick.twist), TwistGrant()
+    for limiter in limiters:
+        grant = limiter.limit(request, grant)
     steps = not standing or any(grant.scaled(command.twist)) or not transitions.at_rest(tick.gait, stands=True)
     shift = transitions.body_shift if steps else None
     shifted = transitions.pose.set_shift(shift, state.shift.value)
