@@ -295,7 +295,7 @@ def test_stages_use_the_joint_limits():
     robot = preset("phantomx")
     sequence = stand_up(robot, folded_pose(robot) + 0.1, joint_acceleration=1e3)
     for stage in sequence.stages:
-        first, second = stage.table.first / stage.duration, stage.table.second / stage.duration**2
+        first, second = (each / stage.duration**n for n, each in enumerate(stage.derivatives, 1))
         used = max(
             (np.abs(first) / sequence.joint_limits.speed).max(),
             (np.abs(second) / sequence.joint_limits.acceleration).max(),

@@ -55,7 +55,7 @@ class SequencePlayer:
         self.sequence, self.time = sequence, 0.0
         self.rate = self._target_rate = 1.0
         # Evaluated in advance, so that no tick is delayed when it brakes.
-        self._tables = {id(stage): stage.table for stage in sequence.stages}
+        self._derivatives = {id(stage): stage.derivatives for stage in sequence.stages}
 
     @property
     def now(self) -> SequenceSample:
@@ -138,7 +138,7 @@ class SequencePlayer:
         change = min(max(self._target_rate - self.rate, -dt / _RAMP), dt / _RAMP)
         if not stage.duration:
             return change
-        first, second = (_interpolate(values, fraction) for values in self._tables[id(stage)][1:])
+        first, second = (_interpolate(values, fraction) for values in self._derivatives[id(stage)])
         speed = first / stage.duration
         curvature = second / stage.duration**2 * self.rate**2
         bound = _ACCELERATION_FRACTION * self.sequence.joint_limits.acceleration

@@ -11,7 +11,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import TYPE_CHECKING, NamedTuple, Self
+from typing import TYPE_CHECKING, Self
 
 import numpy as np
 
@@ -27,7 +27,7 @@ from tarsus.robot.robot import Robot
 if TYPE_CHECKING:
     from jaxtyping import Bool, Float, Int
 
-__all__ = ["GRID", "Stage", "StageTable"]
+__all__ = ["GRID", "Stage"]
 
 GRID = np.linspace(0.0, 1.0, 257)
 """Fractions of a stage's duration at which it is evaluated."""
@@ -38,20 +38,6 @@ _MIN_BEND = 0.01
 # Fractions of the joint limits that are used, a reserve for the times between the points of `GRID`.
 _SPEED_FRACTION = 0.99
 _ACCELERATION_FRACTION = 0.96
-
-
-class StageTable(NamedTuple):
-    """Joint angles at the fractions of `GRID`, and their derivatives with respect to the fraction.
-
-    Attributes
-    ----------
-    angles, first, second : array, shape (257, legs, 3)
-        Joint angles, first and second derivative [rad].
-    """
-
-    angles: Float[np.ndarray, "257 legs 3"]
-    first: Float[np.ndarray, "257 legs 3"]
-    second: Float[np.ndarray, "257 legs 3"]
 
 
 @represented()
@@ -199,14 +185,17 @@ class Stage:
         return np.asarray(solved - _FULL_TURN * np.round((solved - self.angles) / _FULL_TURN))
 
     @cached_property
-    def table(self) -> StageTable:
-        """Joint angles over the stage, with derivatives."""
-        angles = self.angles_at(GRID)
-        step = GRID[1]
-        first = np.gradient(angles, step, axis=0, edge_order=2)
+    def table(self) -> Float[np.ndarray, "257 legs 3"]:
+        """Joint angles at the fractions of `GRID`: array, shape (257, legs, 3) [rad]."""
+        return self.angles_at(GRID)
+
+    @cached_property
+    def derivatives(self) -> tuple[Float[np.ndarray, "257 legs 3"], Float[np.ndarray, "257 legs 3"]]:
+        """First and second derivative of `table` with respect to the fraction, each of its shape [rad]."""
+        angles, step = self.table, GRID[1]
         second = np.zeros_like(angles)
         second[1:-1] = (angles[2:] - 2 * angles[1:-1] + angles[:-2]) / step**2
-        return StageTable(angles, first, second)
+        return np.gradient(angles, step, axis=0, edge_order=2), second
 
     def shortest_duration(self, limits: JointLimits) -> float:
         """Return the shortest duration within the joint limits [s].
@@ -216,6 +205,6 @@ class Stage:
         limits : JointLimits
             Greatest joint speeds and accelerations.
         """
-        speed, acceleration = (np.abs(values).max(0) for values in self.table[1:])
+        speed, acceleration = (np.abs(values).max(0) for values in self.derivatives)
         by_speed = float((speed / limits.speed).max()) / _SPEED_FRACTION
         return max(by_speed, float(np.sqrt((acceleration / limits.acceleration).max() / _ACCELERATION_FRACTION)))

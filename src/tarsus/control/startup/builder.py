@@ -254,10 +254,10 @@ class SequenceBuilder:
         stage = replace(self.hold(name), **changes)
         check_stage(stage, margin)
         after = replace(self, contacts=stage.contacts_end, body=stage.end)
-        if np.abs(stage.table.angles - self.angles).max() <= _MIN_MOTION:
+        if np.abs(stage.table - self.angles).max() <= _MIN_MOTION:
             return after
         stage = replace(stage, duration=stage.shortest_duration(self.joint_limits))
-        angles = np.where(stage.cartesian[:, None], stage.table.angles[-1], stage.angles_end)
+        angles = np.where(stage.cartesian[:, None], stage.table[-1], stage.angles_end)
         return replace(after, stages=(*self.stages, stage)).end_at(angles)
 
 

@@ -69,7 +69,7 @@ def check_stage(stage: Stage, margin: float) -> None:
     _check_reach(stage)
     _check_limits(stage)
     body = stage.body_at(GRID)
-    points = body @ forward_kinematics(stage.robot, stage.table.angles)
+    points = body @ forward_kinematics(stage.robot, stage.table)
     _check_ground(stage, points, (body @ underside_points(stage.robot)[None])[..., 2])
     _check_lift_off(stage, points[..., 3, :])
     _check_margin(stage, margin)
@@ -77,10 +77,10 @@ def check_stage(stage: Stage, margin: float) -> None:
 
 def _check_reach(stage: Stage) -> None:
     """Refuse a stage in which a foot cannot follow its Cartesian path."""
-    failing = np.argwhere(np.isnan(stage.table.angles).any(-1))
+    failing = np.argwhere(np.isnan(stage.table).any(-1))
     if not len(failing):
         # At the ends of the range of angles, a leg can start with another solution than that of its branch.
-        jump = np.abs(stage.table.angles[0] - stage.angles).max(-1)
+        jump = np.abs(stage.table[0] - stage.angles).max(-1)
         failing = np.argwhere([jump > _BRANCH_TOLERANCE])
     if not len(failing):
         return
@@ -96,7 +96,7 @@ def _check_reach(stage: Stage) -> None:
 
 def _check_limits(stage: Stage) -> None:
     """Refuse a stage in which a joint leaves its limits, or moves further beyond a limit."""
-    excess = limit_excess(stage.robot, stage.table.angles)
+    excess = limit_excess(stage.robot, stage.table)
     increases = np.diff(excess, axis=0) > _ANGLE_TOLERANCE
     if not increases.any():
         return
@@ -106,7 +106,7 @@ def _check_limits(stage: Stage) -> None:
     low, high = np.degrees(stage.robot.limits[leg, joint])
     raise UnreachableError(
         f"{stage.name}: at body height {height * 1000:.1f} mm, the {JOINTS[joint]} of leg "
-        f"{stage.robot.leg_names[leg]} would be at {np.degrees(stage.table.angles[worst, leg, joint]):.1f} deg, "
+        f"{stage.robot.leg_names[leg]} would be at {np.degrees(stage.table[worst, leg, joint]):.1f} deg, "
         f"{np.degrees(excess[worst, leg, joint]):.1f} deg beyond its limits of {low:.1f} to {high:.1f} deg"
     )
 
@@ -137,7 +137,7 @@ def _check_margin(stage: Stage, margin: float) -> None:
     """Refuse a stage in which the centre of mass comes too near the edge of the support polygon."""
     supports = np.concatenate([stage.feet[stage.contacts], stage.supports])
     fractions = GRID[::_MARGIN_INTERVAL]
-    com = stage.body_at(fractions) @ centre_of_mass(stage.robot, stage.table.angles[::_MARGIN_INTERVAL])
+    com = stage.body_at(fractions) @ centre_of_mass(stage.robot, stage.table[::_MARGIN_INTERVAL])
     points = np.broadcast_to(supports[:, :2], (fractions.size, *supports[:, :2].shape))
     least = float(hull_margin(points, np.ones(points.shape[:2], dtype=bool), com[:, :2]).min())
     if least >= margin - _MARGIN_TOLERANCE:
