@@ -28,11 +28,10 @@ def readings(softness, forces=_FORCES):
     return ValidReadings(joint_angles=measured, forces=tuple(map(tuple, forces.tolist())))
 
 
-def nothing_bears():
-    return [False] * 6
+NOTHING_BEARS = [False] * 6
 
 
-def stepped(valid, *, robot=ROBOT, ticks=800, compensation=None, slope=0.0, bears=nothing_bears):
+def stepped(valid, *, robot=ROBOT, ticks=800, compensation=None, slope=0.0, bears=NOTHING_BEARS):
     compensation = DeflectionCompensation(robot) if compensation is None else compensation
     for _ in range(ticks):
         compensation.step(valid, ANGLES, 0.01, slope=slope, bears=bears)
@@ -153,7 +152,7 @@ def test_legs_that_friction_holds_are_left_alone(name):
     angles = np.array(tarsus.WalkController(robot).angles)
     compensation, valid = DeflectionCompensation(robot), readings(1.0)
     compensation.step(
-        valid._replace(joint_angles=tuple(map(tuple, angles.tolist()))), angles, 0.01, slope=0.0, bears=nothing_bears
+        valid._replace(joint_angles=tuple(map(tuple, angles.tolist()))), angles, 0.01, slope=0.0, bears=NOTHING_BEARS
     )
     assert (compensation.offsets is None) == (needed_friction(robot, angles) < 0.8)
 
@@ -163,13 +162,13 @@ def test_legs_that_friction_holds_on_level_ground_are_compensated_on_a_slope_and
     angles = np.array(tarsus.WalkController(robot).angles)
     measured = tuple(map(tuple, (angles - [0.0, -0.05, 0.0]).tolist()))
     found, valid = DeflectionCompensation(robot), readings(0.0)._replace(joint_angles=measured)
-    found.step(valid, angles, 0.01, slope=0.0, bears=nothing_bears)
+    found.step(valid, angles, 0.01, slope=0.0, bears=NOTHING_BEARS)
     assert found.offsets is None
     for _ in range(300):
-        found.step(valid, angles, 0.01, slope=0.2, bears=nothing_bears)
+        found.step(valid, angles, 0.01, slope=0.2, bears=NOTHING_BEARS)
     assert np.abs(found.offsets).max() > 0.005
     for _ in range(300):
-        found.step(valid, angles, 0.01, slope=0.0, bears=nothing_bears)
+        found.step(valid, angles, 0.01, slope=0.0, bears=NOTHING_BEARS)
     assert np.abs(found.offsets).max() < 1e-3
 
 
@@ -199,20 +198,20 @@ def test_without_forces_the_feet_in_contact_share_the_weight(softness, side):
     turned = turned_by(equilibrium(bears, robot))
     measured = tuple(map(tuple, (ANGLES + softness * turned).tolist()))
     valid = ValidReadings(joint_angles=measured)
-    found = stepped(valid, robot=robot, bears=bears.tolist)
+    found = stepped(valid, robot=robot, bears=bears.tolist())
     assert found.softness == pytest.approx(softness, abs=1e-6)
     np.testing.assert_allclose(found.offsets, -SHARE * softness * turned, atol=1e-6)
     # Feet that leave the ground give their load back, and so do legs whose joint angles are not measured any more.
     assert np.abs(stepped(valid, robot=robot, compensation=found).offsets).max() < 1e-9
-    again = stepped(valid, robot=robot, bears=bears.tolist)
+    again = stepped(valid, robot=robot, bears=bears.tolist())
     unread = valid._replace(joint_angles=(None, *measured[1:]))
-    assert np.abs(stepped(unread, robot=robot, bears=bears.tolist, compensation=again).offsets[0]).max() < 1e-9
+    assert np.abs(stepped(unread, robot=robot, bears=bears.tolist(), compensation=again).offsets[0]).max() < 1e-9
 
 
 def test_a_robot_without_masses_has_no_loads_by_contacts():
     robot = ROBOT.replace(body_mass=None, link_mass=None)
     valid = readings(1.0)._replace(forces=None)
-    assert stepped(valid, robot=robot, ticks=3, bears=lambda: [True] * 6).offsets is None
+    assert stepped(valid, robot=robot, ticks=3, bears=[True] * 6).offsets is None
 
 
 def slip(**channels):

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, TypeAlias
 
 import numpy as np
 
-from tarsus.control.pose.vertical_loads import Bears, VerticalLoads
+from tarsus.control.pose.vertical_loads import VerticalLoads
 from tarsus.control.readings import ValidReadings
 from tarsus.load.compliant.joint_springs import JointSprings
 from tarsus.robot.robot import Robot
@@ -73,7 +73,7 @@ class DeflectionCompensation:
             self._legs = list(zip(*(column.tolist() for column in columns), strict=True))
 
     def step(
-        self, valid: ValidReadings, angles: Float[np.ndarray, "legs 3"], dt: float, *, slope: float, bears: Bears
+        self, valid: ValidReadings, angles: Float[np.ndarray, "legs 3"], dt: float, *, slope: float, bears: list[bool]
     ) -> None:
         """Follow the loads and learn the softness.
 
@@ -85,7 +85,7 @@ class DeflectionCompensation:
             Joint angles that were commanded in the last tick [rad].
         dt, slope : float, float
             Time since the last tick [s]; slope under the feet [m/m].
-        bears : callable
+        bears : list of bool
             Which feet bear load: they share the robot's weight out where forces are not measured.
         """
         if self.offsets is None:

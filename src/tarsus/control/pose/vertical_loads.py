@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from typing import TYPE_CHECKING, TypeAlias
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -15,10 +15,7 @@ from tarsus.robot.robot import Robot
 if TYPE_CHECKING:
     from jaxtyping import Float
 
-__all__ = ["Bears", "VerticalLoads"]
-
-Bears: TypeAlias = Callable[[], Sequence[bool]]
-"""Which feet bear load: it is asked only where forces do not tell."""
+__all__ = ["VerticalLoads"]
 
 # How fast the loads follow forces and contacts [1/s]: a foot that lands hard must not be pressed down further.
 _RATE = 30.0
@@ -52,7 +49,7 @@ class VerticalLoads:
     def step(
         self,
         valid: ValidReadings,
-        bears: Bears,
+        bears: list[bool],
         dt: float,
         *,
         feet: Sequence[Sequence[float]],
@@ -64,7 +61,7 @@ class VerticalLoads:
         ----------
         valid : ValidReadings
             The readings; a leg without joint angles, or without force where other legs have one, bears nothing.
-        bears, dt : callable, float
+        bears, dt : list of bool, float
             Which feet bear load: of use where forces are not measured; time since the last tick [s].
         feet : sequence of (x, y)
             The feet in B [m].
@@ -74,7 +71,7 @@ class VerticalLoads:
         if valid.forces is not None:
             measured = [max(force[2], 0.0) if force else 0.0 for force in valid.forces]
         else:
-            measured = [self._weight / _FEWEST * on for on in bears()]
+            measured = [self._weight / _FEWEST * on for on in bears]
         if valid.joint_angles is None or None in valid.joint_angles:
             known = valid.joint_angles or (None,) * len(feet)
             measured = [load if of_leg else 0.0 for load, of_leg in zip(measured, known, strict=True)]

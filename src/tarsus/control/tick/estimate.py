@@ -26,10 +26,7 @@ def estimated(walk: WalkComponents, tick: TickState, readings: SensorReadings | 
     timing, angles = walk.transitions.timing, walk.time_scaling.angles
     state, legs = walk.ground.sense(readings, dt, tick.gait, timing=timing, angles=angles)
     ground, deflection = walk.ground, walk.solver.deflection
-
-    def bears() -> list[bool]:
-        return [on and ground.contacts.touches(leg) for leg, on in enumerate(state.down.tolist())]
-
+    bears = [on and ground.contacts.touches(leg) for leg, on in enumerate(state.down.tolist())]
     deflection.step(ground.measured, angles, dt, slope=abs(ground.body.stance.uphill), bears=bears)
     ground.body.lowered = deflection.lowered
     if legs:
