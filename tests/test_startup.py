@@ -14,7 +14,7 @@ from tarsus.control.startup.builder import BodyTarget
 from tarsus.control.startup.foothold_stations import foothold_stations
 from tarsus.control.startup.initial_state import initial_state, over_feet
 from tarsus.control.startup.planner import fold, sit_down, stand_up
-from tarsus.control.startup.raise_body import change_footholds, raise_body
+from tarsus.control.startup.raise_body import raise_body
 from tarsus.errors import InputError, TarsusError, UnreachableError
 from tarsus.kinematics.folded_pose import folded_pose
 from tarsus.kinematics.inverse import inverse_kinematics
@@ -366,9 +366,10 @@ def test_with_three_feet_on_the_ground_none_is_lifted():
     builder = initial_state(robot, stance_angles(robot), joint_limits(robot))
     for leg in (0, 2, 4):
         builder = builder.unload(leg)
+    feet = default_stance(robot, builder.height, swing_height=0.03)
     turned = stance_angles(robot) + 0.1 * np.array([[0], [1], [0], [1], [0], [1]])
     with pytest.raises(TarsusError, match=r"only 3 feet are on the ground; .* requires at least 4"):
-        change_footholds(builder, turned)
+        raise_body(builder, feet, turned)
 
 
 def test_a_final_stance_with_other_angles_is_rejected():

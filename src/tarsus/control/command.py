@@ -12,11 +12,13 @@ from tarsus.errors import InputError
 from tarsus.gait.gait import Gait
 from tarsus.representation import represented
 
-__all__ = ["BODY_AXES", "Command", "finite_numbers"]
+__all__ = ["BODY_AXES", "Command"]
 
 BODY_AXES = ("x", "y", "z", "roll", "pitch", "yaw")
 """The six axes of a body pose."""
 
+# No length of a robot [m] and no cycle time [s] is greater, and the squares of greater values may overflow.
+_MOST = 1e3
 _PARAMETERS = ("body", "gait", "body_height", "swing_height", "stance_width", "cycle_time", "sway")
 
 
@@ -70,17 +72,17 @@ class Command:
     state: Any = None
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "twist", finite_numbers("twist", self.twist, ("vx", "vy", "wz"), most=math.inf))
+        object.__setattr__(self, "twist", _finite("twist", self.twist, ("vx", "vy", "wz"), most=math.inf))
         if self.only_twist:
             return
         for name in ("body", "sway"):
             if getattr(self, name) is not None:
-                object.__setattr__(self, name, finite_numbers(name, getattr(self, name), BODY_AXES))
+                object.__setattr__(self, name, _finite(name, getattr(self, name), BODY_AXES))
         for name in ("body_height", "swing_height", "stance_width", "cycle_time"):
             value = getattr(self, name)
             auto = name == "cycle_time" and isinstance(value, str) and value == "auto"
             if value is not None and not auto:
-                object.__setattr__(self, name, finite_numbers(name, (value,), (name,))[0])
+                object.__setattr__(self, name, _finite(name, (value,), (name,))[0])
         self._require_ranges()
         for name in ("foot_targets", "foot_velocities"):
             if getattr(self, name) is not None:
@@ -115,26 +117,12 @@ def _by_leg(name: str, given: Any, *, back: bool) -> dict[int, tuple[float, ...]
             number = operator.index(leg)
         except TypeError:
             raise InputError(f"the command's {name} names the leg {leg!r}; it must be a whole number") from None
-        found[number] = None if value is None and back else finite_numbers(f"{name}[{number}]", value, ("x", "y", "z"))
+        found[number] = None if value is None and back else _finite(f"{name}[{number}]", value, ("x", "y", "z"))
     return found
 
 
-def finite_numbers(name: str, values: Sequence[float], axes: Sequence[str], *, most: float = 1e3) -> tuple[float, ...]:
-    """Return values as finite floats, one for each axis.
-
-    Parameters
-    ----------
-    name, values, axes : str, sequence of float, sequence of str
-        Name of the values, for the message; the numbers; names of the axes.
-    most : float
-        Greatest absolute value: no length of a robot [m] and no cycle time [s] is greater than 1000, and the squares
-        of greater values may overflow.
-
-    Raises
-    ------
-    InputError
-        If there are more or fewer, or one is no finite number within the bound.
-    """
+def _finite(name: str, values: Sequence[float], axes: Sequence[str], *, most: float = _MOST) -> tuple[float, ...]:
+    """Return values as finite floats, one for each axis, none greater in magnitude than `most`."""
     single = len(axes) == 1
     try:
         found = tuple(_number(value) for value in values)

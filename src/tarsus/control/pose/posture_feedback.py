@@ -10,14 +10,13 @@ from tarsus.control.readings import RollPitch
 from tarsus.errors import InputError
 from tarsus.gait.foot_plane import FootPlane
 
-__all__ = ["LEVELLING_SHARES", "BodyMove", "Levelling", "PostureFeedback", "PostureRates"]
+__all__ = ["BodyMove", "Levelling", "PostureFeedback", "PostureRates"]
 
 Levelling: TypeAlias = Literal["level", "between", "follow"]
 """The attitude to keep: level, along the slope, or in the middle between both."""
 
-LEVELLING_SHARES = {"level": 0.0, "between": 0.5, "follow": 1.0}
-"""How much of the slope the body follows."""
-
+# How much of the slope the body follows.
+_SHARES = {"level": 0.0, "between": 0.5, "follow": 1.0}
 # Gains [1/s] and greatest rates of height [m/s] and tilt [rad/s]; without a measured attitude the tilt follows slower.
 _HEIGHT_GAIN, _MOST_CLIMB = 2.5, 0.1
 _TILT_GAIN, _MOST_TURN, _UNMEASURED_GAIN = 6.0, 0.3, 0.5
@@ -91,10 +90,10 @@ class PostureFeedback:
     """
 
     def __init__(self, levelling: Levelling | None, *, scale: float = 1.0) -> None:
-        if levelling is not None and levelling not in LEVELLING_SHARES:
-            raise InputError(f"levelling is {levelling!r}; it must be None or one of {', '.join(LEVELLING_SHARES)}")
+        if levelling is not None and levelling not in _SHARES:
+            raise InputError(f"levelling is {levelling!r}; it must be None or one of {', '.join(_SHARES)}")
         self._scale = scale
-        self._share = None if levelling is None else LEVELLING_SHARES[levelling]
+        self._share = None if levelling is None else _SHARES[levelling]
         self.raised = self.given_way = 0.0
         self.kept = 0.0 if self._share is None else 1 - self._share
         self._rests = False

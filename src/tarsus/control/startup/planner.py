@@ -35,11 +35,10 @@ from tarsus.robot.robot import Robot
 if TYPE_CHECKING:
     from jaxtyping import Bool, Float
 
-__all__ = ["DEFAULT_MARGIN", "fold", "sit_down", "stand_up"]
+__all__ = ["fold", "sit_down", "stand_up"]
 
-DEFAULT_MARGIN = 0.010
-"""Default of the least stability margin during changes of footholds [m]."""
-
+# Default of the least stability margin during changes of footholds [m].
+_MARGIN = 0.010
 # Feet that a robot stands on at least.
 _LEAST_FEET = 3
 
@@ -50,7 +49,7 @@ def stand_up(
     *,
     body_height: float | None = None,
     swing_height: float | None = None,
-    margin: float = DEFAULT_MARGIN,
+    margin: float = _MARGIN,
     joint_speed: Float[Array, "..."] | None = None,
     joint_acceleration: Float[Array, "..."] | None = None,
 ) -> MotionSequence:
@@ -117,7 +116,7 @@ def sit_down(
     angles: Float[Array, "legs 3"] | None = None,
     *,
     swing_height: float | None = None,
-    margin: float = DEFAULT_MARGIN,
+    margin: float = _MARGIN,
     joint_speed: Float[Array, "..."] | None = None,
     joint_acceleration: Float[Array, "3"] | Float[Array, "legs 3"] | None = None,
     loaded: Bool[np.ndarray, "legs"] | None = None,

@@ -22,7 +22,7 @@ from tarsus.kinematics.underside import belly_depth
 if TYPE_CHECKING:
     from jaxtyping import Bool, Float
 
-__all__ = ["change_footholds", "lower_body", "raise_body"]
+__all__ = ["lower_body", "raise_body"]
 
 
 # Spacing of the body heights that are tried for the advice of an error message [m].
@@ -70,7 +70,7 @@ def raise_body(
         if builder.belly:
             builder = builder.move_legs("place feet", angles, landed=True)
         else:
-            builder = change_footholds(builder, angles)
+            builder = _change_footholds(builder, angles)
         builder = _at_height(builder, next_height)
     error = float(np.abs(builder.angles - stance).max())
     if error > _ANGLE_TOLERANCE:
@@ -123,7 +123,7 @@ def lower_body(builder: SequenceBuilder) -> SequenceBuilder:
     for station in stations[::-1]:
         spots = footholds_straight_out(robot, station.distances, -builder.height)
         angles = inverse_kinematics(robot, spots).require().angles
-        builder = _at_height(change_footholds(builder, angles), station.height)
+        builder = _at_height(_change_footholds(builder, angles), station.height)
     return builder.lie_down()
 
 
@@ -137,28 +137,11 @@ def _at_height(builder: SequenceBuilder, height: float) -> SequenceBuilder:
     return builder.move_body(name, target, builder.contacts)
 
 
-def change_footholds(builder: SequenceBuilder, angles: Float[np.ndarray, "legs 3"]) -> SequenceBuilder:
-    """Move all legs to a new stance with the body stationary.
+def _change_footholds(builder: SequenceBuilder, angles: Float[np.ndarray, "legs 3"]) -> SequenceBuilder:
+    """Move all legs to a new stance, all feet on the ground, with the body stationary.
 
     Feet in the air are placed first. Then the tripods are moved, every second leg of the ring, and single legs where a
     tripod cannot be lifted.
-
-    Parameters
-    ----------
-    builder : SequenceBuilder
-        The robot in its current state.
-    angles : array, shape (legs, 3)
-        Joint angles of the new stance, all feet on the ground [rad].
-
-    Returns
-    -------
-    SequenceBuilder
-        The robot in the new stance.
-
-    Raises
-    ------
-    TarsusError
-        If a foot cannot be moved.
     """
     remaining = np.abs(angles - builder.angles).max(-1) > _SAME
     if (remaining & ~builder.contacts).any():

@@ -137,14 +137,8 @@ class TransitionExecutor:
         begins = time_to_touchdown(state, self.timing)
         return begins, begins.max() + self._next.delays
 
-    def is_settled(self, state: GaitState) -> bool:
-        """Return whether the last transition is over: posture reached, returning legs on the ground.
-
-        Parameters
-        ----------
-        state : GaitState
-            The gait state.
-        """
+    def _is_settled(self, state: GaitState) -> bool:
+        """Return whether the last transition is over: posture reached, returning legs on the ground."""
         if self._active is not None or self._next is not None or self._foot_targets.returning:
             return False
         return self.pose.reached(state.posture.value)
@@ -179,7 +173,7 @@ class TransitionExecutor:
         GaitState
             The gait state; its clock is set where another gait begins.
         """
-        self.scheduler.advance_planning(plan, idle=self.is_settled(now.gait))
+        self.scheduler.advance_planning(plan, idle=self._is_settled(now.gait))
         if self.scheduler.planned is not None:
             return self._try_to_begin(self.scheduler.planned, now)
         if self._active is not None:
@@ -273,7 +267,7 @@ class TransitionExecutor:
         GaitState
             The gait state; its clock is set where another gait begins.
         """
-        settled = self.is_settled(state)
+        settled = self._is_settled(state)
         if self._next is None:
             goal = self.frequency if settled else min(self.frequency, self.timing.frequency)
             if goal != self.timing.frequency:
