@@ -1,9 +1,9 @@
-"""Rotations about an axis against SciPy's."""
+"""Rotations about an axis against SciPy's, and the one that makes a direction vertical."""
 
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from tarsus.kinematics.rotation import axis_and_angle, rotation_about
+from tarsus.kinematics.rotation import axis_and_angle, levelling_rotation, rotation_about
 
 
 def test_rotations_about_an_axis_are_those_of_scipy():
@@ -23,3 +23,11 @@ def test_axis_and_angle_are_those_of_scipy():
 def test_without_a_rotation_there_is_no_axis():
     axis, angle = axis_and_angle(np.eye(3))
     assert (axis.tolist(), angle) == ([0.0, 0.0, 0.0], 0.0)
+
+
+def test_the_levelling_rotation_turns_a_vector_into_z_about_a_horizontal_axis():
+    for vector in np.random.default_rng(7).normal(size=(50, 3)):
+        up = vector / np.linalg.norm(vector)
+        rotation = Rotation.from_matrix(levelling_rotation(up))
+        np.testing.assert_allclose(rotation.apply(up), (0.0, 0.0, 1.0), atol=1e-12)
+        assert abs(rotation.as_rotvec()[2]) < 1e-9

@@ -1,4 +1,4 @@
-"""Rotations about an axis."""
+"""Rotations about an axis, and those that make a direction vertical."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import numpy as np
 if TYPE_CHECKING:
     from jaxtyping import Float
 
-__all__ = ["axis_and_angle", "rotation_about"]
+__all__ = ["axis_and_angle", "levelling_rotation", "rotation_about"]
 
 # The axis of a smaller rotation is undefined by rounding: the sine of its angle.
 _LEAST_SINE = 1e-12
@@ -47,3 +47,16 @@ def axis_and_angle(rotation: Float[np.ndarray, "3 3"]) -> tuple[Float[np.ndarray
     if sine < _LEAST_SINE:
         return np.zeros(3), 0.0
     return axis / sine, float(np.arctan2(sine, (np.trace(r) - 1) / 2))
+
+
+def levelling_rotation(up: Float[np.ndarray, "3"]) -> Float[np.ndarray, "3 3"]:
+    """Return the smallest rotation that turns a unit vector into z.
+
+    Parameters
+    ----------
+    up : array, shape (3,)
+        The vector.
+    """
+    x, y, z = up
+    sideways = -x * y / (1 + z)
+    return np.array([[z + y * y / (1 + z), sideways, -x], [sideways, z + x * x / (1 + z), -y], up])

@@ -11,12 +11,13 @@ from tarsus.control.sequence.stage import Stage
 from tarsus.control.startup.builder import GROUND_TOLERANCE, BodyTarget, SequenceBuilder
 from tarsus.kinematics.mass import centre_of_mass
 from tarsus.kinematics.pose import Pose
+from tarsus.kinematics.rotation import levelling_rotation
 from tarsus.kinematics.underside import belly_depth, underside_points
 
 if TYPE_CHECKING:
     from jaxtyping import Bool, Float
 
-__all__ = ["body_targets", "levelling_rotation", "stage_to"]
+__all__ = ["body_targets", "stage_to"]
 
 # Number of body heights to try between lying and standing.
 _HEIGHTS = 6
@@ -64,16 +65,3 @@ def _pose_above(body: Pose, rotation: Float[np.ndarray, "3 3"], pivot: Float[np.
     """Return the pose with a rotation and a height that keeps the horizontal position of the pivot."""
     position = body.position + body.rotation @ pivot - rotation @ pivot
     return Pose(rotation, np.array([position[0], position[1], height]))
-
-
-def levelling_rotation(up: Float[np.ndarray, "3"]) -> Float[np.ndarray, "3 3"]:
-    """Return the smallest rotation that turns a unit vector into z.
-
-    Parameters
-    ----------
-    up : array, shape (3,)
-        The vector.
-    """
-    x, y, z = up
-    sideways = -x * y / (1 + z)
-    return np.array([[z + y * y / (1 + z), sideways, -x], [sideways, z + x * x / (1 + z), -y], up])

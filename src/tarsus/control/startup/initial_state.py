@@ -8,13 +8,13 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from tarsus.arrays import Array
-from tarsus.control.startup.body_targets import levelling_rotation
 from tarsus.control.startup.builder import GROUND_TOLERANCE, SequenceBuilder, body_contacts
 from tarsus.errors import InputError, TarsusError
 from tarsus.gait.foot_plane import FootPlane, fitted_plane
 from tarsus.kinematics.leg import checked_angles, forward_kinematics
 from tarsus.kinematics.pose import Pose
 from tarsus.kinematics.rest import resting_pose
+from tarsus.kinematics.rotation import levelling_rotation
 from tarsus.kinematics.underside import belly_depth
 from tarsus.robot.joint_limits import JointLimits
 from tarsus.robot.robot import Robot
