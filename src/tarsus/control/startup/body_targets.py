@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from tarsus.control.sequence.stage import Stage
 from tarsus.control.startup.builder import GROUND_TOLERANCE, BodyTarget, SequenceBuilder
 from tarsus.kinematics.mass import centre_of_mass
 from tarsus.kinematics.pose import Pose
@@ -15,9 +13,9 @@ from tarsus.kinematics.rotation import levelling_rotation
 from tarsus.kinematics.underside import belly_depth, underside_points
 
 if TYPE_CHECKING:
-    from jaxtyping import Bool, Float
+    from jaxtyping import Float
 
-__all__ = ["body_targets", "stage_to"]
+__all__ = ["body_targets"]
 
 # Number of body heights to try between lying and standing.
 _HEIGHTS = 6
@@ -46,19 +44,6 @@ def body_targets(builder: SequenceBuilder, height: float) -> tuple[BodyTarget, .
     pivot = underside[on_ground].mean(0) if on_ground.any() else com
     lying = BodyTarget(_pose_above(body, upright, pivot, lowest), pivot, belly=True)
     return (lying, *standing) if on_ground.any() else (*standing, lying)
-
-
-def stage_to(builder: SequenceBuilder, target: BodyTarget, cartesian: Bool[np.ndarray, "legs"]) -> Stage:
-    """Return a stage that moves the body to a target, unchecked.
-
-    Parameters
-    ----------
-    builder, target : SequenceBuilder, BodyTarget
-        The robot in its current state; pose of the body at the end.
-    cartesian : array of bool, shape (legs,)
-        Legs whose feet stay where they are; the others keep their joint angles.
-    """
-    return replace(builder.hold(""), end=target.body, pivot=target.pivot, cartesian=cartesian)
 
 
 def _pose_above(body: Pose, rotation: Float[np.ndarray, "3 3"], pivot: Float[np.ndarray, "3"], height: float) -> Pose:
