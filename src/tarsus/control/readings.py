@@ -81,22 +81,12 @@ class ValidReadings(NamedTuple):
 
     Attributes
     ----------
-    joint_angles : tuple of ((coxa, femur, tibia) or None), or None
-        Measured joint angles [rad].
-    joint_speeds : tuple of ((coxa, femur, tibia) or None), or None
-        Measured joint speeds [rad/s].
-    currents : tuple of ((coxa, femur, tibia) or None), or None
-        Servo currents [A].
-    temperatures : tuple of ((coxa, femur, tibia) or None), or None
-        Servo temperatures [deg C].
-    voltages : tuple of ((coxa, femur, tibia) or None), or None
-        Supply voltages at the servos [V].
+    joint_angles, joint_speeds, currents, temperatures, voltages, torques : tuple of (three floats or None), or None
+        Of each leg, for coxa, femur and tibia; as in `SensorReadings`.
     contacts : tuple of (bool or None), or None
         Which feet touch the ground.
     forces : tuple of ((x, y, z) or None), or None
         Forces of the ground on the feet in B; x and y are 0 where only z was measured [N].
-    torques : tuple of ((coxa, femur, tibia) or None), or None
-        Torques exerted by the servos [N m].
     attitude : (roll, pitch), or None
         Roll and pitch of B in the world [rad].
     angular_rates : (x, y, z), or None

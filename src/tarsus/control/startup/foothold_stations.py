@@ -49,17 +49,7 @@ class FootholdStation(NamedTuple):
 
 
 class _Bands(NamedTuple):
-    """Reachable bands at a sequence of body heights.
-
-    Attributes
-    ----------
-    heights : array, shape (n,)
-        Body heights [m].
-    near, far : array, shape (n, legs)
-        Ends of the bands on the ground [m].
-    near_lifted, far_lifted : array, shape (n, legs)
-        Ends of the bands that are reachable both on the ground and at swing height [m].
-    """
+    """Ends of the bands that are reachable on the ground, and there and at swing height, for some body heights [m]."""
 
     heights: Float[np.ndarray, "n"]
     near: Float[np.ndarray, "n legs"]
