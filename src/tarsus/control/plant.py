@@ -22,7 +22,6 @@ if TYPE_CHECKING:
 
 __all__ = ["Environment", "IdealPlant", "Plant"]
 
-
 # Height over the ground below which a foot switch closes [m].
 _TOUCH = 1e-4
 

@@ -44,7 +44,6 @@ if TYPE_CHECKING:
 
 __all__ = ["WalkController"]
 
-
 # Longest part of a tick that is walked [s]: a late tick must not become a jump.
 _LONGEST_TICK = 0.05
 _JOINTS = Cause("joint speed and acceleration")

@@ -14,7 +14,6 @@ if TYPE_CHECKING:
 
 __all__ = ["PoseController"]
 
-
 # Greatest bandwidth of the posture [rad/s], and the greatest speed and turning rate of the body [m/s, rad/s].
 _BANDWIDTH = 4.0
 _BODY_SPEED, _BODY_TURN = 0.08, 0.5

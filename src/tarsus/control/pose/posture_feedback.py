@@ -30,7 +30,6 @@ _RESTS, _MOVES = (0.01, 0.06), (0.05, 0.18)
 # How fast the height to keep changes [m/s], and how much of the body height it may be lower.
 _RAISING, _LOWERING, _MOST_LOWER = 0.08, 0.2, 0.25
 
-
 _Ranges: TypeAlias = tuple[Sequence[float], Sequence[float]]
 
 

@@ -19,7 +19,6 @@ if TYPE_CHECKING:
 
 __all__ = ["SitDown"]
 
-
 # Time to accelerate to the sitting speed and to decelerate from it [s].
 _ACCELERATION_TIME = 0.5
 # Position tolerance at the end of a motion [m].

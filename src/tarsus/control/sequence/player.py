@@ -17,7 +17,6 @@ if TYPE_CHECKING:
 
 __all__ = ["SequencePlayer"]
 
-
 # Interval at which joint accelerations are evaluated while the playback rate changes [s].
 _INTERVAL = 1e-3
 # Shortest time in which the playback rate changes by 1 [s].

@@ -21,7 +21,6 @@ if TYPE_CHECKING:
 
 __all__ = ["check_stage", "limit_excess"]
 
-
 # Tolerances of an angle beyond its limit [rad], of a depth below the ground, and of the stability margin [m].
 _ANGLE_TOLERANCE = 1e-8
 _DEPTH_TOLERANCE = 1e-6

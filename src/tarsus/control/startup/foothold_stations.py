@@ -22,7 +22,6 @@ if TYPE_CHECKING:
 
 __all__ = ["FootholdStation", "foothold_stations"]
 
-
 # Spacing of the body heights that are evaluated [m].
 _HEIGHT_STEP = 0.0025
 # Distance of footholds from the ends of a band [m].

@@ -24,7 +24,6 @@ if TYPE_CHECKING:
 
 __all__ = ["SERVO_SPEED_SHARE", "initial_state", "lying_state", "over_feet", "uneven_state"]
 
-
 SERVO_SPEED_SHARE = 0.5
 """Default joint speed of motion sequences, as a share of the servo's no-load speed."""
 
@@ -127,12 +126,7 @@ def uneven_state(
     rotation = levelling_rotation(up / np.linalg.norm(up))
     body = Pose(rotation, np.array([0.0, 0.0, -float((feet @ rotation[2]).min())]))
     return SequenceBuilder(
-        robot=robot,
-        joint_limits=joint_limits,
-        angles=measured,
-        body=body,
-        contacts=loaded,
-        supports=np.zeros((0, 3)),
+        robot=robot, joint_limits=joint_limits, angles=measured, body=body, contacts=loaded, supports=np.zeros((0, 3))
     )
 
 

@@ -25,7 +25,6 @@ if TYPE_CHECKING:
 
 __all__ = ["level_body"]
 
-
 # Tolerance of an angle beyond its limit [rad].
 _ANGLE_TOLERANCE = 1e-7
 # Feet below this height over the ground are kept at their place, as joint backlash can explain their height [m].

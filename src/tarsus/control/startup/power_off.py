@@ -19,7 +19,6 @@ if TYPE_CHECKING:
 
 __all__ = ["PowerOffOrder", "power_off_order"]
 
-
 # Step of the angle of a falling joint [rad].
 _ANGLE_STEP = np.deg2rad(0.25)
 # Least drop that is reported [m].

@@ -24,7 +24,6 @@ if TYPE_CHECKING:
 
 __all__ = ["lower_body", "raise_body"]
 
-
 # Spacing of the body heights that are tried for the advice of an error message [m].
 _BODY_HEIGHT_STEP = 0.005
 # Tolerance of the joint angles of the final stance, which are computed in two ways [rad].

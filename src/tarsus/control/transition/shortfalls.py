@@ -17,7 +17,6 @@ __all__ = ["UNREACHABLE", "rejection_limitations", "stance_limitations"]
 
 UNREACHABLE = Cause("no leg reaches the ground at this height")
 
-
 # Differences below this are rounding [m, rad].
 _TOLERANCE = 1e-6
 

@@ -16,7 +16,6 @@ if TYPE_CHECKING:
 
 __all__ = ["FootholdPredictor", "final_footholds"]
 
-
 # Below this twist [m/s, rad/s] a stopping robot steps to its final rest footholds.
 _FINAL_SPEED = 0.01
 # Tolerance of fractions near 1.

@@ -23,7 +23,6 @@ if TYPE_CHECKING:
 
 __all__ = ["FootPrediction", "lift_delays", "stance_intervals", "time_to_touchdown"]
 
-
 # Rounding of a distance [m].
 _TOLERANCE = 1e-9
 # Fractions of the path to the command that are tried, and fractions of a target that is no longer feasible.

@@ -14,7 +14,6 @@ from tarsus.gait.gait import Gait
 
 __all__ = ["NextLift", "StepTiming"]
 
-
 # The twist follows its target within about one stance: faster, and standing feet would be left behind.
 _TIME_CONSTANTS_PER_STANCE = 4.0
 # Number of feet that hold a robot.

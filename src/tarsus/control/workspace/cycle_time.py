@@ -19,7 +19,6 @@ if TYPE_CHECKING:
 
 __all__ = ["CycleTiming", "SteadyCycle", "cycle_timing"]
 
-
 # Fractions of the joints' limits available to steady walking; the rest is for changes of the command.
 _SPEED_FRACTION, _ACCELERATION_FRACTION = 0.97, 0.8
 _SIZES = np.linspace(0.0, 1.0, 6)
