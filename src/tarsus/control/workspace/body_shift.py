@@ -14,7 +14,7 @@ from tarsus.gait.stance.stance_geometry import StanceGeometry
 if TYPE_CHECKING:
     from jaxtyping import Bool, Complex, Float
 
-__all__ = ["NO_SHIFT", "displaced", "stance_shift", "support_phases"]
+__all__ = ["NO_SHIFT", "stance_shift", "support_phases"]
 
 NO_SHIFT = CriticallyDamped.still(np.zeros(2 * COEFFICIENTS))
 """No body shift: coefficients, real and imaginary parts, shape (14,) [m]."""
@@ -63,14 +63,3 @@ def support_phases(gait: Gait) -> tuple[Float[np.ndarray, "n"], Bool[np.ndarray,
     inside = 1e-6 + _SWING * (1 - gait.duty_factor - 2e-6)
     phases = (lift + inside).ravel()
     return phases, gait.phase(phases)[2]
-
-
-def displaced(stance: StanceGeometry, displacement: complex) -> StanceGeometry:
-    """Return the stance with the body displaced in the ground plane.
-
-    Parameters
-    ----------
-    stance, displacement : StanceGeometry, complex
-        The stance; displacement [m].
-    """
-    return stance._replace(position=stance.position + np.array([displacement.real, displacement.imag, 0.0]))

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from tarsus.control.incremental import Incremental
-from tarsus.control.workspace.body_shift import displaced, stance_shift, support_phases
+from tarsus.control.workspace.body_shift import stance_shift, support_phases
 from tarsus.control.workspace.foot_workspace import foot_workspace
 from tarsus.gait.body_shift import shift_at
 from tarsus.gait.foot_polygons import NORMALS_CONJUGATE
@@ -85,7 +85,7 @@ def shifted_limits(
     coefficients = stance_shift(gait, stance, centre, max(float(limits.margins.min()), 0.0))
     yield
     for displacement in shift_at(coefficients, _SHIFT_PHASES).tolist():
-        stand = displaced(stance, displacement)
+        stand = _displaced(stance, displacement)
         sides = yield from foot_workspace(robot, stand, foot_distance=foot_distance)
         limits = limits.intersection(_limits_in(everywhere, stand, sides, 1.0))
         yield
@@ -93,12 +93,17 @@ def shifted_limits(
     around = (NORMALS_CONJUGATE * stance.rest[:, None]).real + max(float(limits.margins.min()), 0.0)
     sides, fraction = np.minimum(limits.bounds, around), 1.0
     for phase, down in zip(*support_phases(gait), strict=True):
-        check, stand = StabilityCheck(robot, down[None]), displaced(stance, complex(shift_at(coefficients, phase)))
+        check, stand = StabilityCheck(robot, down[None]), _displaced(stance, complex(shift_at(coefficients, phase)))
         centre, shift = check.centre_of_mass(stand, sides)
         safe = safe_fraction(down[None], sides, stand.rest, centre, margin=check.least_margin, shift=shift)
         fraction = min(fraction, safe)
         yield
     return dataclasses.replace(_limits_in(everywhere, stance, sides, fraction), shift=coefficients)
+
+
+def _displaced(stance: StanceGeometry, displacement: complex) -> StanceGeometry:
+    """Return the stance with the body displaced in the ground plane."""
+    return stance._replace(position=stance.position + np.array([displacement.real, displacement.imag, 0.0]))
 
 
 def _limits_in(
