@@ -203,7 +203,11 @@ class TransitionPlanner:
         final = with_stroke_limits(limits, timing.stroke, timing.turning, duty_factor=gait.duty_factor)
         yield
         stepping, on_path = yield from self._path_limits(parameters, start, goal, final)
-        return _Increment(goal, timing, stepping, on_path, final) if on_path.feasible else self._path_cause(on_path)
+        if on_path.feasible:
+            return _Increment(goal, timing, stepping, on_path, final)
+        if not on_path.balanced:
+            return TIPPING._replace(reason=f"{TIPPING.reason} on the way")
+        return Cause("could not stand and step on the way", self._robot.leg_names[on_path.limiting_leg])
 
     def _limits(self, parameters: WalkParameters, stance: StanceTarget) -> Incremental[VelocityLimits]:
         """Find the limits in a stance, with its sway or the body shift of its gait."""
@@ -233,11 +237,6 @@ class TransitionPlanner:
         if any(parameters.sway):
             return Cause("end of the leg's reach as the body sways", self._robot.leg_names[limits.limiting_leg])
         return reach_cause(self._robot, stance.stand)
-
-    def _path_cause(self, limits: VelocityLimits) -> Cause:
-        if not limits.balanced:
-            return TIPPING._replace(reason=f"{TIPPING.reason} on the way")
-        return Cause("could not stand and step on the way", self._robot.leg_names[limits.limiting_leg])
 
     def _shortfalls(self, parameters: WalkParameters, path: _Path) -> tuple[Limitation, ...]:
         """Return what of the commanded stance is not feasible."""
