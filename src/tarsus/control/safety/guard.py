@@ -203,20 +203,17 @@ class Guard:
             if self._state in (GuardState.PASSING, GuardState.RECOVERING):
                 self._hold()
         elif self._state is GuardState.PASSING:
-            self._pass(command, step)
+            if self._started:
+                self._joints.send(command, step)
+            else:
+                self._joints.start(command, step)
+                self._started = True
+            self._feet.accept()
             return
         elif self._may_recover(command, violations):
             self._recover_to(command, step)
             return
         self._stay(step, gap=any(found.kind is InterventionKind.TIME_GAP for found in violations))
-
-    def _pass(self, command: list[float], step: float) -> None:
-        if self._started:
-            self._joints.send(command, step)
-        else:
-            self._joints.start(command, step)
-            self._started = True
-        self._feet.accept()
 
     def _hold(self) -> None:
         self._state, self._sit_down = GuardState.HOLDING, None
