@@ -61,7 +61,7 @@ class ReadingsValidator:
             "torques": _torques_channel(robot),
             **{name: VectorChannel(name, legs) for name in _FINITE_CHANNELS},
             "angular_rates": AngularRateChannel(),
-            "ground": _GroundChannel(),
+            "ground": _GroundChannel(["ground"]),
         }
         self._channels: list[Any] = [channels[name] for name in CHANNELS]
         self._timed: list[Channel] = [channels["attitude"], channels["joint_angles"]]
@@ -127,11 +127,8 @@ def rejections(valid: ValidReadings) -> list[Limitation]:
     return [Limitation(kind=LimitationKind.READINGS, cause=reason) for reason in valid.rejected]
 
 
-class _GroundChannel:
-    """Heights of the ground, which have been checked as they were made."""
-
-    def reset(self) -> None:
-        """Do nothing: there is nothing to settle."""
+class _GroundChannel(Channel):
+    """Heights of the ground, which have been checked as they were made: nothing has to settle."""
 
     def read(self, value: Any, rejected: list[str]) -> GroundHeights | None:
         if type(value) is GroundHeights:
