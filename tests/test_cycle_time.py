@@ -8,7 +8,7 @@ import pytest
 from gait_robots import PRESETS, preset, ring
 from sample_stances import cycle_timing_of, setup_of, standing, velocity_limits_of
 from tarsus.control.incremental import complete
-from tarsus.control.workspace.cycle_time import SteadyCycle, cycle_timing
+from tarsus.control.workspace.cycle_time import _SteadyCycle, cycle_timing
 from tarsus.control.workspace.stance_limits import velocity_limits
 from tarsus.gait.cycle import cycle_feet
 from tarsus.gait.gait import Gait
@@ -170,7 +170,7 @@ def test_more_legs_take_more_increments(legs, gait):
 def test_the_complex_form_equals_the_planned_cycle(duty_factor, swing_height):
     moves = np.array([(0.1, 0.0, 0.0), (0.0, 0.0, 0.5), (-0.03, 0.07, -0.4), (0.0, 0.0, 0.0), (0.02, 0.01, 1e-9)])
     rest = np.array([0.2 + 0.1j, -0.1 + 0.25j, 0.0 - 0.3j])
-    cycle = SteadyCycle(Gait(duty_factor, (0.0,) * 3), moves, swing_height)
+    cycle = _SteadyCycle(Gait(duty_factor, (0.0,) * 3), moves, swing_height)
     points = np.stack([rest.real, rest.imag, 0 * rest.real], axis=-1)
     together = Gait(duty_factor, (0.0,) * 3)
     feet, _ = cycle_feet(together, points, moves, swing_height=np.asarray(swing_height), phases=cycle.phases)

@@ -20,10 +20,10 @@ from tarsus.control.safety.bounds import GuardBounds
 from tarsus.control.safety.interventions import InterventionKind, Violation
 from tarsus.kinematics.reach import ANGLE_TOLERANCE
 
-__all__ = ["ROUNDING", "JointMonitor", "stoppable_speed"]
+__all__ = ["JointMonitor"]
 
-ROUNDING = 1e-12
-"""Tolerance of a sent angle for the bounds on speed and acceleration [rad]."""
+# Tolerance of a sent angle for the bounds on speed and acceleration [rad].
+_ROUNDING = 1e-12
 
 
 class JointMonitor:
@@ -98,7 +98,7 @@ class JointMonitor:
         """
         violations = []
         interval = (step + self._step) / 2
-        tolerance = ROUNDING / step
+        tolerance = _ROUNDING / step
         joints = zip(angles, self.angles, self.speeds, self._bounds, strict=True)
         for i, (angle, last_angle, last_speed, (low, high, max_speed, max_acceleration)) in enumerate(joints):
             velocity = (angle - last_angle) / step
@@ -112,7 +112,7 @@ class JointMonitor:
             braking_speed = speed - max_acceleration * step / 2
             if braking_speed > 0:
                 distance = high - angle if velocity > 0 else angle - low
-                if braking_speed * braking_speed > 2 * max_acceleration * (distance + ROUNDING):
+                if braking_speed * braking_speed > 2 * max_acceleration * (distance + _ROUNDING):
                     needed = braking_speed * braking_speed / (2 * max_acceleration)
                     violations.append(Violation(InterventionKind.BRAKING_DISTANCE, i // 3, i % 3, needed, distance))
         return violations
@@ -164,7 +164,7 @@ class JointMonitor:
         ):
             gap, commanded = last - last_angle, (angle - last) / step
             # Half of the acceleration is reserved for changes of the commanded velocity.
-            closing = min(stoppable_speed(abs(gap), max_acceleration / 2, step), recovery_speed)
+            closing = min(_stoppable_speed(abs(gap), max_acceleration / 2, step), recovery_speed)
             velocities.append(min(max(commanded, -max_speed), max_speed) + math.copysign(closing, gap))
             matches = matches and abs(gap) <= max_acceleration * step * step / 2
         if matches and not self.motion_violations(command, step):
@@ -182,22 +182,16 @@ class JointMonitor:
         ):
             change = max_acceleration * interval
             # The intervals overlap up to rounding; the last one applied takes precedence.
-            lowest = -stoppable_speed(last_angle - low, max_acceleration, step)
-            allowed = min(max(velocity, lowest), stoppable_speed(high - last_angle, max_acceleration, step))
+            lowest = -_stoppable_speed(last_angle - low, max_acceleration, step)
+            allowed = min(max(velocity, lowest), _stoppable_speed(high - last_angle, max_acceleration, step))
             allowed = min(max(allowed, last_speed - change), last_speed + change)
             allowed = min(max(allowed, -max_speed), max_speed)
             angles.append(min(max(last_angle + allowed * step, low), high))
         self.send(angles, step)
 
 
-def stoppable_speed(distance: float, acceleration: float, step: float) -> float:
-    """Return the greatest speed of a step from which a joint can still stop within a distance [rad/s].
-
-    Parameters
-    ----------
-    distance, acceleration, step : float, float, float
-        Distance available, this step included [rad]; greatest acceleration [rad/s^2]; time step [s].
-    """
+def _stoppable_speed(distance: float, acceleration: float, step: float) -> float:
+    """Return the greatest speed of a step from which a joint can still stop within a distance, this step included."""
     half = acceleration * step / 2
     # Either the step alone uses the distance, or the step and the braking distance after it do.
     return distance / step if distance <= half * step else math.sqrt(2 * acceleration * distance) - half

@@ -39,15 +39,14 @@ class TransitionScheduler:
         The transition that was begun last.
     planned : StanceTransition or None
         A transition that is planned and has not begun.
-    rejections : dict of WalkParameters to tuple of Limitation
-        Parameters that are not feasible at all, and what that limits.
     """
 
     def __init__(self, initial: StanceTransition) -> None:
         self.current = initial
         self.requested = initial.parameters
         self.planned: StanceTransition | None = None
-        self.rejections: dict[WalkParameters, tuple[Limitation, ...]] = {}
+        # Parameters that are not feasible at all, and what that limits.
+        self._rejections: dict[WalkParameters, tuple[Limitation, ...]] = {}
         self._asked = initial.parameters
         self._job: Incremental[StanceTransition | Cause] | None = None
         # Parameters for which nothing is left to plan.
@@ -92,7 +91,7 @@ class TransitionScheduler:
             changes["cycle_time"] = None
         asked = dataclasses.replace(before, correction=correction, excluded=excluded, **changes)
         if asked != before:
-            self.requested, self.rejections = asked, {}
+            self.requested, self._rejections = asked, {}
             self._shortfalls = ()
 
     def advance_planning(self, plan: PlanTransition, *, idle: bool) -> None:
@@ -141,7 +140,7 @@ class TransitionScheduler:
         kept_for = dataclasses.replace(self._planned_for, cycle_time=transition.parameters.cycle_time)
         self._planned_for = kept_for if transition.keeps_posture else transition.parameters
         # What was rejected may be feasible from the new stance.
-        self.planned, self.rejections, self._done = None, {}, None
+        self.planned, self._rejections, self._done = None, {}, None
 
     def _finish_planning(self, found: StanceTransition | Cause) -> None:
         self._job = None
@@ -151,13 +150,13 @@ class TransitionScheduler:
         elif self._asked == self._next_parameters()[0]:
             posture = None if self._stays else self.current.posture
             rejected = rejection_limitations(self._asked, self.current.parameters, posture, found)
-            self.rejections[self._asked] = rejected
-            self._shortfalls = tuple(chain.from_iterable(self.rejections.values()))
+            self._rejections[self._asked] = rejected
+            self._shortfalls = tuple(chain.from_iterable(self._rejections.values()))
 
     def _finish_request(self) -> None:
         """Take note that all that is feasible of the commanded parameters is met."""
         self._done, current = self.requested, self.current.parameters
-        self._shortfalls = tuple(chain.from_iterable(self.rejections.values()))
+        self._shortfalls = tuple(chain.from_iterable(self._rejections.values()))
         # Standing otherwise has to wait until all legs are back in the gait.
         deferred = dataclasses.replace(self.requested.stepping_like(current), correction=current.correction)
         if current.excluded and self._is_open(deferred, False):
@@ -186,7 +185,7 @@ class TransitionScheduler:
         """Return whether parameters are neither met nor rejected; their posture is not where that stays."""
         # Halfway to others, the current parameters have to be met anew.
         met = parameters == self.current.parameters and (stay or not self._between)
-        return not met and parameters not in self.rejections
+        return not met and parameters not in self._rejections
 
 
 def _gait(before: Gait, gait: Gait | str) -> Gait:

@@ -17,7 +17,7 @@ from tarsus.robot.robot import Robot
 if TYPE_CHECKING:
     from jaxtyping import Float
 
-__all__ = ["CycleTiming", "SteadyCycle", "cycle_timing"]
+__all__ = ["CycleTiming", "cycle_timing"]
 
 # Fractions of the joints' limits available to steady walking; the rest is for changes of the command.
 _SPEED_FRACTION, _ACCELERATION_FRACTION = 0.97, 0.8
@@ -77,7 +77,7 @@ def cycle_timing(
     farthest = limits.feasible_fractions(_TWISTS, stance_time=1.0, duty_factor=gait.duty_factor)[:, None] * _TWISTS
     stroke = np.abs(farthest[:, :1] + 1j * farthest[:, 1:2] + 1j * farthest[:, 2:] * limits.rest).max(-1)
     moves = np.concatenate([np.zeros((1, 3)), (_SIZES[1:, None, None] * farthest).reshape(-1, 3)])
-    cycle = SteadyCycle(gait, moves, stance.swing_height)
+    cycle = _SteadyCycle(gait, moves, stance.swing_height)
     size = max(_BLOCK // (robot.legs * len(cycle.shift)), 1)
     times = []
     for block, begin in enumerate(range(0, len(moves), size)):
@@ -130,32 +130,16 @@ def _sizes(
     return np.stack([np.interp(cycle_times, column, _SIZES) for column in shortest.T], axis=-1)
 
 
-class SteadyCycle:
+class _SteadyCycle:
     """Steady gait cycles in one stance, and the joint speeds and accelerations that they need.
 
     All legs follow the same path through their cycle. It is sampled over the swing and a little of the stance on
-    either side; with a duty factor below 1/2 over the whole cycle, since the foot is then fastest in stance.
-
-    Parameters
-    ----------
-    gait : Gait
-        Order of the steps.
-    moves : array, shape (n, 3)
-        Motions of the body during one stance: forward [m], left [m], yaw [rad].
-    swing_height : float
-        Swing height [m].
-
-    Attributes
-    ----------
-    phases : array, shape (m,)
-        Samples of the cycle, in cycles.
-    height : array, shape (m, 1)
-        Heights of the foot [m].
-    factor, shift : complex array, shape (m, n)
-        Position of a foot in the heading frame: its rest foothold times `factor`, plus `shift` [m].
+    either side; with a duty factor below 1/2 over the whole cycle, since the foot is then fastest in stance. In the
+    heading frame, at sample and move, a foot is where its rest foothold times `factor` plus `shift` is, x + iy [m].
     """
 
     def __init__(self, gait: Gait, moves: Float[np.ndarray, "n 3"], swing_height: float) -> None:
+        """Sample cycles whose moves of the body during one stance are these: forward [m], left [m], yaw [rad]."""
         begin = gait.duty_factor - 0.02 if gait.duty_factor >= 0.5 else -0.02
         self.phases = np.linspace(begin, 1.02, round(_SAMPLES * (1.02 - begin) / (1.04 - gait.duty_factor)))
         # With rest footholds 0 and 1: as complex numbers, positions are linear in rest footholds.
@@ -170,20 +154,7 @@ class SteadyCycle:
     def shortest_times(
         self, robot: Robot, stance: StanceGeometry, part: slice, joint_limits: JointLimits
     ) -> Float[np.ndarray, "n"]:
-        """Return the shortest cycle for each of some moves.
-
-        Parameters
-        ----------
-        robot, stance : Robot, StanceGeometry
-            A single robot; body and rest footholds.
-        part, joint_limits : slice, JointLimits
-            Selects the moves; limits of the joints' motion.
-
-        Returns
-        -------
-        array, shape (n,)
-            Durations [s].
-        """
+        """Return the shortest cycle for each of some moves [s]."""
         # (legs, samples, moves); the joints become the first axis.
         places = self.shift[:, part] + self.factor[:, part] * stance.rest[:, None, None]
         solution = stance.solve(robot.geometry.with_axes(2), places.real, places.imag, self.height)
