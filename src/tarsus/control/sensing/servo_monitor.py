@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections import UserDict, deque
-from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -136,7 +135,9 @@ class ServoMonitor:
     ) -> None:
         """Change the evidence against joints by their errors; those of legs that are not measured are NaN."""
         last, self._last = measured if self._last is None else self._last, measured
-        touching = self._touching(valid.contacts)
+        touched, self._touched = self._touched, {leg for leg, touches in enumerate(valid.contacts or ()) if touches}
+        # A foot that presses on moving ground loses touch for a moment, in which its servo is stalled as before.
+        touching = touched | self._touched
         for leg in self._found - self.failed.keys():
             # It is to be used again: what has told against it does not count any more.
             assert self._evidence is not None  # what it was found by
@@ -170,14 +171,6 @@ class ServoMonitor:
         for _, leg, joint in np.argwhere(self._evidence > _FAILED_AFTER).tolist():
             self.failed.setdefault(leg, joint)
             self._found.add(leg)
-
-    def _touching(self, contacts: Sequence[bool | None] | None) -> set[int]:
-        """Return the legs whose feet touch the ground, now or as joints were last looked at.
-
-        A foot that presses on moving ground loses touch for a moment, in which its servo is stalled as before.
-        """
-        before, self._touched = self._touched, {leg for leg, touches in enumerate(contacts or ()) if touches}
-        return before | self._touched
 
     def _torque(self, valid: ValidReadings, leg: int, joint: int) -> float:
         """Return the measured torque of a joint over the stall torque of its servo; NaN where it is unknown."""
