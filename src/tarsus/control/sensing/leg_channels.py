@@ -6,7 +6,7 @@ import math
 import sys
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
-from operator import itemgetter, le, sub
+from operator import itemgetter, le
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -161,21 +161,13 @@ class JointAngleChannel(VectorChannel):
     def __init__(self, legs: Sequence[str], limits: Float[np.ndarray, "legs 3 2"], speed: float) -> None:
         beyond = f"beyond the joint's limits by more than {math.degrees(_OUTSIDE):.3g} deg"
         super().__init__("joint_angles", legs, bounds=limits + np.array([-_OUTSIDE, _OUTSIDE]), beyond=beyond)
-        # The last plausible angles of all legs, NaN before, and when those of each leg were read; by how much they may
-        # change until they are compared with their bounds again.
+        # The last plausible angles of all legs, NaN before, and when those of each leg were read.
         self._last, self._read, self._speed = [*_NOT_NUMBERS] * len(legs), [0.0] * len(legs), speed
-        self._room = -1.0
 
     def _contains(self, numbers: list[float]) -> bool:
         """Return whether the angles of all legs are plausible, which are the last ones then."""
-        change = math.dist(numbers, self._last)
-        if not change <= _JUMP:
+        if not (math.dist(numbers, self._last) <= _JUMP and super()._contains(numbers)):
             return False
-        self._room -= change
-        if self._room < 0.0:
-            self._room = min(*map(sub, numbers, self._low), *map(sub, self._high, numbers))
-            if self._room < 0.0:
-                return False
         self._last, self._read = numbers, [self.now] * len(self._read)
         return True
 
@@ -186,5 +178,5 @@ class JointAngleChannel(VectorChannel):
         most, of_leg = _JUMP + _FASTER * self._speed * (self.now - self._read[leg]), slice(3 * leg, 3 * leg + 3)
         if any(abs(now - before) > most for now, before in zip(angles, self._last[of_leg], strict=True)):
             return "change faster than the servos turn"
-        self._last[of_leg], self._read[leg], self._room = angles, self.now, -1.0
+        self._last[of_leg], self._read[leg] = angles, self.now
         return angles
