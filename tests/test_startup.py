@@ -11,12 +11,12 @@ from hypothesis import strategies as st
 
 from gait_robots import PRESETS, preset
 from tarsus.control.startup.builder import BodyTarget
-from tarsus.control.startup.foothold_stations import foothold_stations
 from tarsus.control.startup.initial_state import initial_state, over_feet
 from tarsus.control.startup.planner import fold, sit_down, stand_up
 from tarsus.control.startup.raise_body import raise_body
 from tarsus.errors import InputError, TarsusError, UnreachableError
 from tarsus.kinematics.folded_pose import folded_pose
+from tarsus.kinematics.foothold_stations import foothold_stations
 from tarsus.kinematics.inverse import inverse_kinematics
 from tarsus.kinematics.leg import forward_kinematics
 from tarsus.kinematics.mass import centre_of_mass

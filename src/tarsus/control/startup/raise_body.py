@@ -11,9 +11,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from tarsus.control.startup.builder import BodyTarget, SequenceBuilder
-from tarsus.control.startup.foothold_stations import FootholdStation, foothold_stations
 from tarsus.errors import TarsusError, UnreachableError
 from tarsus.gait.branch import branches
+from tarsus.kinematics.foothold_stations import FootholdStation, foothold_stations
 from tarsus.kinematics.inverse import inverse_kinematics
 from tarsus.kinematics.pose import Pose
 from tarsus.kinematics.stance import default_stance, footholds_straight_out
