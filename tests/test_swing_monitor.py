@@ -41,6 +41,38 @@ def test_a_leg_that_is_stopped_in_its_swing_is_noticed_within_30_ms_and_no_other
     assert 0.0 < found[2] - 3.2 <= 0.03
 
 
+@pytest.mark.parametrize(
+    ("ticks", "within"),
+    [
+        ((10, 20, 20, 30, 50), 0.08),
+        ((8, 16, 16, 24, 40), 0.07),
+        ((8, 10, 12), 0.04),
+        ((10,) * 30 + (100,), 0.12),
+        ((5,), 0.03),
+    ],
+)
+@pytest.mark.parametrize("stops_at", [math.inf, 5.6])
+def test_ticks_of_any_lengths_stop_no_leg_that_follows_its_commands(ticks, within, stops_at):
+    # Servos of 8 ms, commanded in steps that are on their way for 4 ms; leg 2 is stopped at full speed.
+    monitor, random, found = SwingMonitor(), np.random.default_rng(0), dict[int, float]()
+    offsets, angles, now = [0.13 * leg for leg in range(6)], [0.0] * 6, 0.0
+    offsets[2] = 0.0
+    before = sent = [0.0] * 6
+    while now < 8.0:
+        dt = int(random.choice(ticks)) / 1e3
+        before, sent = sent, [swung(now + offset) for offset in offsets]
+        for ms in range(round(1e3 * dt)):
+            free = [leg for leg in range(6) if leg != 2 or now + ms / 1e3 < stops_at]
+            for leg in free:
+                angles[leg] += ((sent if ms >= 4 else before)[leg] - angles[leg]) / 8
+        now += dt
+        valid = ValidReadings(joint_angles=tuple((angle, 0.0, 0.0) for angle in angles))
+        for leg in monitor.step(sent, valid, dt, AIR):
+            found.setdefault(leg, now)
+    assert set(found) == ({2} if stops_at < math.inf else set())
+    assert all(0.0 < time - stops_at <= within for time in found.values())
+
+
 def test_feet_that_stand_and_joints_that_are_not_measured_tell_nothing():
     assert monitored(0.02, 3.2, down=[True] * 6) == {}
     monitor = SwingMonitor()

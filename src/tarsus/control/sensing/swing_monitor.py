@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections import deque
 from collections.abc import Sequence
+from itertools import accumulate
 
 from tarsus.control.readings import ValidReadings
 
@@ -20,10 +21,15 @@ _BEHIND, _TIMES, _MEAN_RATE = 0.02, 3.0, 1.0
 _LONGEST_LAG, _RATE, _SLOW = 0.12, 5.0, 0.5
 # How fast the mean lag follows [1/s]: the first guess, the longest one, should not count.
 _LAG_RATE = 0.3
+# Rounding of a time [s].
+_ROUNDING = 1e-9
 
 
 class SwingMonitor:
     """Compares measured angles of swinging legs with those commanded before a lag, which is learnt.
+
+    A servo is commanded in steps, and its joint evens them out: expected is the mean of what was commanded in a time as
+    long as the longest of the last ticks. Where ticks differ, that moves evenly.
 
     Attributes
     ----------
@@ -32,24 +38,34 @@ class SwingMonitor:
     """
 
     def __init__(self) -> None:
-        self.lag, self._lag, self._usual, self._commanded = 0.0, _LONGEST_LAG, 0.0, deque[list[float]]()
+        self.lag, self._lag, self._usual = 0.0, _LONGEST_LAG, 0.0
+        # For how long what was commanded, last first [s].
+        self._commanded = deque[tuple[float, list[float]]]()
 
     def step(self, commanded: list[float], valid: ValidReadings, dt: float, down: Sequence[bool]) -> list[int]:
         """Return the legs in the air that are stopped, by the angles of their coxa joints that were commanded last."""
         commands = self._commanded
         stopped: list[int] = []
-        commands.appendleft(commanded)
-        if len(commands) <= _LONGEST_LAG / dt + 2:
+        commands.appendleft((dt, commanded))
+        window, since = max(time for time, _ in commands), [*accumulate(time for time, _ in commands)]
+        longest = _LONGEST_LAG + window + dt + _ROUNDING
+        if since[-1] <= longest:
             return stopped
-        commands.pop()
-        ticks, share = divmod(self._lag / dt, 1.0)
-        newer, older = commands[int(ticks)], commands[int(ticks) + 1]
-        lag, usual = self._lag, self._usual
+        while since[-1] - commands[-1][0] > longest:
+            since.pop()
+            commands.pop()
+        lag, usual, oldest = self._lag, self._usual, self._lag + window + _ROUNDING
+        held = [
+            (min(start, oldest) - max(start - time, lag), angles)
+            for start, (time, angles) in zip(since, commands, strict=True)
+            if lag < start and start - time <= oldest
+        ]
+        newer, older = held[0][1], held[-1][1]
         for leg, angles in enumerate(valid.joint_angles or ()):
             if angles is None or down[leg]:
                 continue
-            angle, step = angles[0], older[leg] - newer[leg]
-            behind, speed = newer[leg] + share * step - angle, -step / dt
+            angle, speed = angles[0], (newer[leg] - older[leg]) / window
+            behind = sum(time * command[leg] for time, command in held) / window - angle
             # Within the lag, a leg may have turned around.
             still = (commanded[leg] - angle) * speed > 0.0
             if still and behind * speed > (_BEHIND + _TIMES * usual) * abs(speed):
