@@ -951,6 +951,22 @@ def test_a_foot_that_does_not_reach_the_ground_beside_the_others_is_over_no_hole
     assert not limited(missing, 0.1, 0.0, 0.0).limitations
 
 
+def test_a_foot_of_a_robot_that_is_put_down_has_not_looked_for_the_ground_yet():
+    controller, hanging = tarsus.WalkController(tarsus.load_robot("phantomx")), 2
+    contacts = controller._walk.ground.contacts
+    for lasts, touching in ((0.5, [True] * 6), (3.0, [False] * 6), (0.1, [leg != hanging for leg in range(6)])):
+        for _ in range(round(100 * lasts)):
+            readings = tarsus.SensorReadings(contacts=touching, attitude=(0.0, 0.0))
+            controller.step((0.05, 0.0, 0.0), 0.01, readings=readings)
+    assert contacts.seeks(hanging)
+    # From when the others hold it, it looks for as long as any other foot.
+    ticks = 0
+    while contacts.seeks(hanging) and ticks < 200:
+        contacts.step(touching, [True] * 6, 0.01)
+        ticks += 1
+    assert 145 <= ticks <= 151
+
+
 def test_a_command_that_leads_back_ends_the_tries_at_an_obstacle():
     missing = MissingGround(NAMES)
     missing.stopped(1, REST[1], REST[1] + 0.05)

@@ -126,9 +126,12 @@ class FeltGround:
         self.body.see(valid.attitude, state, dt)
         self.ground.see(valid, state)
         # A greater lag of the joints than usual makes contacts late.
-        leaving, rests = timing.due(state, _LEAVING), self._rests and self.support.held
+        leaving, carried = timing.due(state, _LEAVING), self.condition.carried
+        rests = self._rests and self.support.held
         estimated, age = self._loads.estimated, max(valid.contact_age, self._swings.lag - USUAL_LAG)
-        self.contacts.step(measured, down, dt, age=age, count=ticks, leaving=leaving, rests=rests, estimated=estimated)
+        self.contacts.step(
+            measured, down, dt, age=age, count=ticks, leaving=leaving, rests=rests, carried=carried, estimated=estimated
+        )
         self.condition.step([*map(self.contacts.touches, range(len(down)))], valid.attitude, dt, held=self.support.held)
         self.offsets = self._loads.offsets(valid, angles, state, dt, out=self._given[0])
         if self.missing.stranded and all(down):

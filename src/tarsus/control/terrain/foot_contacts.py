@@ -93,8 +93,7 @@ class FootContacts:
     def __init__(self, legs: int, *, scale: float = 1.0) -> None:
         self.estimator = ContactEstimator(legs)
         self.lifted, self.standing, self.age = [False] * legs, [True] * legs, 0.0
-        self._estimated, self._scale = False, scale
-        self._unheld, self._tilt = 0.0, (0.0, 0.0)
+        self._estimated, self._scale, self._unheld, self._tilt = False, scale, 0.0, (0.0, 0.0)
         # The last tilt that was measured, and that of each foot when it lost its contact [rad].
         self._last: RollPitch | None = None
         self._tilts, self.sunk = [(0.0, 0.0)] * legs, [0.0] * legs
@@ -110,6 +109,7 @@ class FootContacts:
         count: int = 1,
         leaving: Sequence[bool] | None = None,
         rests: bool = False,
+        carried: bool = False,
         estimated: bool = False,
     ) -> None:
         """Take in the contacts of one tick, or of some in which they are the same.
@@ -126,8 +126,8 @@ class FootContacts:
             Which feet are to lift off soon: once these have stood, they are not lowered where others take their load.
         rests : bool
             Whether the robot stands still and is held by the feet that bear load: those that have stood stay, then.
-        estimated : bool
-            Whether the contacts are estimated by joint angles.
+        carried, estimated : bool
+            Whether the robot is in the air, or is being put down; whether contacts are estimated by joint angles.
         """
         self.age, self._estimated = age, estimated
         self.estimator.step(readings, dt, count=count)
@@ -144,10 +144,10 @@ class FootContacts:
         self.standing = [self._bears(leg) for leg in range(len(down))]
         for leg, leaves in enumerate(leaving or ()):
             stays = rests or (leaves and self._without[leg] < _LEAVES)
-            self.standing[leg] = self.standing[leg] or (stays and self._settled[leg] > _SETTLED)
-        # Feet of a robot that rests are hardly lowered, and have found nothing yet once it walks.
-        for leg, on in enumerate(down):
-            self._searched[leg] = self._searched[leg] + dt if on and not (rests or self.standing[leg]) else 0.0
+            self.standing[leg] |= stays and self._settled[leg] > _SETTLED
+        # Feet of a robot that rests are hardly lowered, those of one that is carried find nothing: they begin later.
+        for leg, (on, stands) in enumerate(zip(down, self.standing, strict=True)):
+            self._searched[leg] = (self._searched[leg] + dt) * (on and not (rests or carried or stands))
 
     def find_open(
         self,
