@@ -951,6 +951,27 @@ def test_a_foot_that_does_not_reach_the_ground_beside_the_others_is_over_no_hole
     assert not limited(missing, 0.1, 0.0, 0.0).limitations
 
 
+@pytest.mark.parametrize(("depth", "tips", "tries"), [(0.015, False, 2), (0.05, False, 0), (0.015, True, 0)])
+def test_the_walk_goes_on_from_a_foot_that_has_found_no_ground_at_any_place_where_that_is_no_hole(depth, tips, tries):
+    missing, went_on = MissingGround(NAMES), 0
+    for _ in range(4):
+        for _ in range(4):
+            feet = [missing.places.get(0, AHEAD[0]), *REST[1:]]
+            stepped(missing, [(0, depth, False, False)], feet, deeper=0.02)
+            limited(missing, 0.1, 0.0, 0.0)
+        assert missing.gives_up(0)
+        assert missing.refuses
+        # From then on it is hardly lowered, and does not land.
+        for _ in range(110):
+            stepped(missing, [(0, 0.005, False, False)], feet, deeper=0.02, lost=0 if tips else None)
+            limited(missing, 0.1, 0.0, 0.0)
+        went_on += not missing.refuses
+        assert missing.stranded == ([] if missing.refuses else [0])
+        # It steps first.
+        stepped(missing, [], stands=[True] * 6)
+    assert went_on == tries
+
+
 def test_a_foot_of_a_robot_that_is_put_down_has_not_looked_for_the_ground_yet():
     controller, hanging = tarsus.WalkController(tarsus.load_robot("phantomx")), 2
     contacts = controller._walk.ground.contacts

@@ -85,6 +85,8 @@ class MissingGround:
         self.obstacles, self.places, self.stranded = Obstacles(scale), dict[int, complex](), list[int]()
         self.pace, self.back, self.tips, self.edge, self.refuses = 1.0, 0j, 0j, 0.0, False
         self._names, self._scale, self._tries, self._cause = names, scale, [0] * len(names), ("", "")
+        # Whether each foot that has stepped back has reached a little below the others only: it is over no hole.
+        self._shallow = [False] * len(names)
         self.lost: int | None = None
         # How long feet that hang have been held up by their legs [s].
         self._held = dict[int, float]()
@@ -193,17 +195,19 @@ class MissingGround:
     def _back_off(self, footing: Footing, dt: float) -> None:
         """Decide with which velocity the body backs off, and whether the walk goes on where it has waited."""
         feet, stands, centre, _ = footing
-        self._edge.since = 0.0 if self.places else self._edge.since + dt
+        # A foot that does not reach the ground is over no hole, unless the robot tips.
+        near = all(self.gives_up(leg) and self._shallow[leg] and not self.tips for leg in self.places)
+        self._edge.since = (self._edge.since + dt) * near
+        if self.refuses and not self._stops and self._again < _AGAIN and self._edge.since > _WAITS:
+            self._again += 1
+            self._edge.leave(self.obstacles.found)
         speed, backed = self._scale * _SPEED, self._backed < self._scale * _BACKS
         if not self.places:
             # A robot that tips where a foot sinks goes back at once.
             way = self.tips or self._edge.way * (self._stops and self._over)
             self.back = -speed * way * backed
             self._backed = (self._backed + speed * dt) * bool(way)
-            if self.refuses and not self._stops and self._again < _AGAIN and self._edge.since > _WAITS:
-                self._again += 1
-                self._edge.leave(self.obstacles.found)
-            elif not self.refuses and self._edge.since > FORGETS:
+            if not self.refuses and self._edge.since > FORGETS:
                 self._again, self.obstacles.found = 0, 0j
             return
         self.pace, self._slows, turn = _SLOWEST * bool(self.stranded), "", self._edge.way.conjugate()
@@ -227,6 +231,7 @@ class MissingGround:
         self.places[leg] = complex(footholds.rest[leg]) - back * self._edge.way
         # Ground that is seen and not reached from here may be reached with other footholds.
         reached, shallow = f"no ground within {1e3 * depth:.0f} mm below the other feet", depth < self._scale * _SHALLOW
+        self._shallow[leg] = shallow
         self._cause = self._names[leg], "the ground is lower than the leg reaches" if shallow else reached
         self._again += _AGAIN if sure and not shallow else 0
 
