@@ -157,6 +157,33 @@ def test_front_legs_reach_higher_ahead_and_rear_legs_behind():
     assert reach.highest_on_way(0, rest[0] + 0.03, rest[0]) == tops[0][1]
 
 
+def test_legs_reach_higher_beside_their_strokes_away_from_the_body():
+    controller = WalkController(STRIDER)
+    state, reach = controller._tick.gait, Reach(STRIDER)
+    rest = state.foot
+    reach.update(TickState(state, np.array([0.12, 0.0, 0.0])), rest, 0.5)
+    for leg, place in enumerate(rest.tolist()):
+        bow = complex(reach.bows[leg])
+        assert bow == pytest.approx(0.03j * np.sign(place.imag))
+        straight, half, out = (reach.highest_on_way(leg, at, at) for at in (place, place + bow / 2, place + bow))
+        assert straight < half < out == reach.highest_on_way(leg, place, place, bowed=True)
+        # Towards the body it is no lower than known along the stroke.
+        assert reach.highest_on_way(leg, place - bow, place - bow) == straight
+    # Sideways, the strokes of the middle legs lead through the body, and those legs swing straight.
+    reach.update(TickState(state, np.array([0.0, 0.12, 0.0])), rest, 0.5)
+    assert reach.bows[[1, 4]].tolist() == [0j, 0j]
+    assert reach.highest_on_way(1, rest[1], rest[1], bowed=True) == reach.highest_on_way(1, rest[1], rest[1])
+
+
+@pytest.mark.parametrize(("swing_height", "share"), [(0.02, 0.0), (0.075, 0.5), (0.2, 1.0)])
+def test_a_foot_swings_out_as_far_as_its_leg_needs_for_its_top(swing_height, share):
+    under = GroundUnder(0.0, lowest=-0.2, highest=0.05, bow=0.03j, bowed=0.1)
+    felt = FeltInputs([], [], [], 0.0, 0.0, (0.0, 0.0), 0j, 0.0, 0j, 0.8, 1.0, swing_height, 10.0, 0.0, {})
+    _, foot = _swinging(0.0, FeltFoot(), under, felt, 0.01, (0.0, 0.5, 0.0, 0j))
+    assert foot.top == pytest.approx(min(swing_height, 0.1))
+    assert foot.bow == pytest.approx(0.03j * share)
+
+
 def test_places_out_of_reach_on_level_ground_do_not_tell_how_low_a_leg_reaches():
     controller = WalkController(STRIDER)
     state, reach = controller._tick.gait, Reach(STRIDER)
@@ -582,8 +609,8 @@ def test_a_foot_that_has_met_an_obstacle_goes_down_once_it_is_past_it():
     risen = FeltFoot(top=0.05, top_phase=0.4, drawn_back=0j)
     for place, clears, goes_down in (
         (0j, True, False),
-        (0.02 + 0j, True, False),
-        (0.04 + 0j, True, True),
+        (0.04 + 0j, True, False),
+        (0.06 + 0j, True, True),
         (0j, False, True),
     ):
         under = GroundUnder(0.0, lowest=-0.2, highest=0.2, clears=clears)

@@ -260,7 +260,7 @@ def test_a_foot_passes_over_what_is_on_its_way_and_rises_first_where_that_is_nea
     known.see(ValidReadings(ground=GroundHeights(heights=np.where(np.abs(X - 0.1) < 0.025, 0.06, 0.0))), at())
     known.step(standing(lambda place: 0.0), None, at(), 0.03, drift=0j)
     over = known.under(0j, 0.2 + 0j, 0.01, (-0.1, 0.2), clears=False)
-    assert tuple(over) == pytest.approx((0.01, -0.09, 0.21, 0.07, False, None, False), abs=1e-9)
+    assert over[:7] == pytest.approx((0.01, -0.09, 0.21, 0.07, False, None, False), abs=1e-9)
     assert known.under(0.05 + 0j, 0.2 + 0j, 0.0, (None, 0.2), clears=False).steep
     assert known.under(0.05 + 0j, 0.1 + 0j, 0.0, (None, 0.2), clears=False).lowest == pytest.approx(0.06)
     assert not known.under(0.15 + 0j, 0.15 + 0j, 0.0, (None, 0.2), clears=False).steep

@@ -132,7 +132,7 @@ def test_a_walk_that_slows_down_says_for_which_foot_and_why():
     assert missing.refuses
     assert named(missing) == []
     missing = MissingGround(NAMES)
-    missing.stopped(1, REST[1], REST[1] + 0.05)
+    missing.stopped(1, REST[1], REST[1] + 0.05, 0j)
     assert named(stepped(missing, [(1, 0.0, False, True)])) == [("LM", "an obstacle stops the foot")]
 
 
@@ -360,20 +360,20 @@ def test_a_foot_that_is_stopped_tries_again_then_beside_it_and_then_stays_before
     assert not missing.tries(0, foot)
     for _ in range(2):
         # Drawn back from where it was stopped first, wherever it is stopped next.
-        assert missing.stopped(0, foot, goal) == pytest.approx(-0.04)
+        assert missing.stopped(0, foot, goal, 0j) == pytest.approx(-0.04)
         assert stepped(missing, searches, [foot, *REST[1:]]).places == {0: goal}
         assert missing.pace == 0.0
         assert missing.back == 0.0
     for side in (-1, 1):
         # Towards the body, then away from it: first beside the place, then on from there.
-        missing.stopped(0, foot, goal)
+        missing.stopped(0, foot, goal, 0j)
         waypoint = missing.places[0]
         assert waypoint == pytest.approx(foot - 0.04 + side * 0.06j)
         assert missing.tries(0, foot)
         feet = [waypoint, *REST[1:]]
         # Contact at the place beside it is none of the ground.
         assert stepped(missing, [], feet).places[0] == pytest.approx(goal + side * 0.06j)
-    missing.stopped(0, foot, goal)
+    missing.stopped(0, foot, goal, 0j)
     assert missing.places[0] == pytest.approx(foot - 0.04)
     assert not missing.tries(0, foot)
     refused = limited(missing, 0.1, 0.0, 0.0)
@@ -397,7 +397,7 @@ def test_a_foot_that_is_stopped_tries_again_then_beside_it_and_then_stays_before
         if limited(missing, 0.1, 0.0, 0.0).fraction == 1.0:
             granted += 1
             for _ in range(5):
-                missing.stopped(0, foot, goal)
+                missing.stopped(0, foot, goal, 0j)
             limited(missing, 0.1, 0.0, 0.0)
     assert granted == 1
     assert limited(missing, 0.1, 0.0, 0.0).fraction == 0.0
@@ -407,9 +407,20 @@ def test_a_foot_that_is_stopped_tries_again_then_beside_it_and_then_stays_before
     assert not missing.obstacles.leaves(-0.05 + 0.0j)
 
 
+def test_a_foot_that_may_swing_out_tries_again_there_before_it_tries_other_sides():
+    missing, foot, goal = MissingGround(NAMES), REST[0] - 0.05, REST[0] + 0.05
+    for _ in range(2):
+        missing.stopped(0, foot, goal, 0.03j)
+        waypoint = missing.places[0]
+        assert waypoint == pytest.approx(foot - 0.04 + 0.03j)
+        assert stepped(missing, [], [waypoint, *REST[1:]]).places[0] == pytest.approx(goal + 0.03j)
+    missing.stopped(0, foot, goal, 0.03j)
+    assert missing.places[0] == pytest.approx(foot - 0.04 - 0.06j)
+
+
 def test_a_foot_that_has_got_past_an_obstacle_looks_for_the_ground_like_any_other():
     missing, goal = MissingGround(NAMES), AHEAD[0] + 0.05
-    missing.stopped(0, AHEAD[0], goal)
+    missing.stopped(0, AHEAD[0], goal, 0j)
     hangs = [(0, 0.03, False, True)]
     assert stepped(missing, hangs, AHEAD).pace == 0.0
     past = stepped(missing, hangs, [goal, *REST[1:]])
@@ -510,7 +521,7 @@ def test_a_robot_turns_on_the_spot_at_an_edge(name):
 @pytest.mark.no_cover
 def test_a_robot_stops_at_a_wall_says_so_and_walks_away_from_it():
     walk = Walk(terrain.Step(rise=0.15, start=0.41))
-    stopped = walk.go(0.13, 4.5)
+    stopped = walk.go(0.13, 4.0)
     assert stopped < 0.3
     assert walk.named & {"front left", "front right"}
     # It neither pushes nor climbs, and tries other footholds once.
@@ -666,7 +677,7 @@ def test_a_foot_that_loses_its_ground_on_the_way_back_from_an_edge_has_met_that_
     # Another place knows nothing of it, and an obstacle is no edge.
     missing.forget()
     for _ in range(5):
-        missing.stopped(0, REST[0], REST[0] + 0.05)
+        missing.stopped(0, REST[0], REST[0] + 0.05, 0j)
     stepped(missing, [], stands=[True] * 6)
     limited(missing, -0.1, 0.0, 0.0)
     stepped(missing, [], behind, stands=[True] * 6)
@@ -829,9 +840,7 @@ def test_while_the_walk_waits_a_foot_on_its_way_down_stands_on_lower_ground_that
     pace, phase, speed, height, lands
 ):
     state, body, timing = touching_in_swing(phase, height, FeltFoot(speed=speed, top=0.03, top_phase=0.42))
-    _, landed = met_ground(
-        state, body, MissingGround(NAMES), stopped=[], off_commanded=as_commanded, timing=timing, pace=pace
-    )
+    _, landed = met_ground(state, body, MissingGround(NAMES), stopped=[], lag=as_commanded, timing=timing, pace=pace)
     assert landed == [0] * lands
 
 
@@ -841,10 +850,23 @@ def test_a_foot_that_rises_along_an_obstacle_does_not_stand_on_it(phase, tries):
     rising = FeltFoot(top=0.03, top_phase=0.65, drawn_back=complex(state.foot[0]) - 0.008)
     state = state._replace(foothold=state.foothold + 0.05, felt=[rising, *state.felt[1:]])
     missing = MissingGround(NAMES)
-    after, landed = met_ground(state, body, missing, stopped=[], off_commanded=as_commanded, timing=timing, pace=1.0)
+    after, landed = met_ground(state, body, missing, stopped=[], lag=as_commanded, timing=timing, pace=1.0)
     assert landed == [0] * tries
     assert list(missing.places) == [0] * tries
     assert after.down[0] == bool(tries)
+
+
+@pytest.mark.parametrize(
+    ("speed", "on", "tries"), [(0.0, 0.045, 1), (-0.1, 0.045, 0), (0.0, 0.005, 1), (-0.1, 0.005, 0)]
+)
+def test_a_foot_that_is_high_over_an_obstacle_and_does_not_go_down_touches_its_side(speed, on, tries):
+    # Contact at the end of its way, or far past its collision, is the ground only of a foot that goes down.
+    state, body, timing = touching_in_swing(0.8, 0.05, FeltFoot())
+    high = FeltFoot(speed=speed, top=0.05, top_phase=0.6, drawn_back=complex(state.foot[0]) - 0.05)
+    state = state._replace(foothold=state.foothold + on, felt=[high, *state.felt[1:]])
+    missing = MissingGround(NAMES)
+    met_ground(state, body, missing, stopped=[], lag=as_commanded, timing=timing, pace=1.0)
+    assert list(missing.places) == [0] * tries
 
 
 def test_a_foot_that_collides_is_drawn_back_from_where_it_is_measured():
@@ -856,7 +878,7 @@ def test_a_foot_that_collides_is_drawn_back_from_where_it_is_measured():
             body,
             MissingGround(NAMES),
             stopped=[],
-            off_commanded=lambda _, lag=lag: -lag,
+            lag=lambda _, lag=lag: -lag,
             timing=timing,
             pace=1.0,
         )
@@ -864,8 +886,8 @@ def test_a_foot_that_collides_is_drawn_back_from_where_it_is_measured():
     # The next time it is drawn back by 40 mm from where it is.
     again = state._replace(swing_phase=state.swing_phase + 0.6, felt=after.felt)
     missing = MissingGround(NAMES)
-    met_ground(again, body, missing, stopped=[0], off_commanded=lambda _: -0.03, timing=timing, pace=1.0)
-    start, _ = missing.obstacles.stopped(0, 0j, 0j)
+    met_ground(again, body, missing, stopped=[0], lag=lambda _: -0.03, timing=timing, pace=1.0)
+    start, _ = missing.obstacles.stopped(0, 0j, 0j, 0j)
     assert start == pytest.approx(state.in_heading(complex(state.foot[0]) - 0.03 - 0.04))
 
 
@@ -874,14 +896,14 @@ def test_ground_that_a_foot_meets_sooner_as_the_body_tips_towards_it_is_not_roug
     state, body, timing = touching_in_swing(0.8, height, FeltFoot(speed=-0.1, top=0.03, top_phase=0.42))
     body.contacts.sunk[0], expected = sunk, Roughness(tarsus.GroundAdaptation())
     expected.landed(off)
-    met_ground(state, body, MissingGround(NAMES), stopped=[], off_commanded=as_commanded, timing=timing, pace=1.0)
+    met_ground(state, body, MissingGround(NAMES), stopped=[], lag=as_commanded, timing=timing, pace=1.0)
     assert body.roughness.value == pytest.approx(expected.value)
 
 
 def test_a_robot_that_is_carried_away_forgets_an_obstacle():
     missing = MissingGround(NAMES)
     for _ in range(5):
-        missing.stopped(0, REST[0] - 0.05, REST[0] + 0.05)
+        missing.stopped(0, REST[0] - 0.05, REST[0] + 0.05, 0j)
     assert missing.obstacles.leaves(-0.05 + 0.0j)
     missing.forget()
     assert not missing.obstacles.leaves(-0.05 + 0.0j)
@@ -890,7 +912,7 @@ def test_a_robot_that_is_carried_away_forgets_an_obstacle():
 
 def test_a_foot_that_an_obstacle_has_stopped_looks_for_the_ground_like_any_other_once_the_robot_tips():
     missing, two = MissingGround(NAMES), [False, True, False, False, True, False]
-    missing.stopped(0, REST[0], REST[0] + 0.05)
+    missing.stopped(0, REST[0], REST[0] + 0.05, 0j)
     stepped(missing, [(0, 0.03, True, True)], REST, stands=two)
     assert not missing.places
     # A walk that waits says for which foot and why.
@@ -908,7 +930,7 @@ def test_a_walk_that_the_ground_slows_down_or_stops_always_says_why():
                 (leg, drawn.uniform(-0.02, 0.1), *(drawn.random(2) < 0.5)) for leg, on in enumerate(down) if not on
             ]
             if drawn.random() < 0.2:
-                missing.stopped(leg, feet[leg], REST[leg] + drawn.uniform(0.06, 0.1))
+                missing.stopped(leg, feet[leg], REST[leg] + drawn.uniform(0.06, 0.1), 0j)
             stepped(missing, searches, feet, stands=down)
             grant = limited(missing, drawn.uniform(-0.1, 0.1), 0.0, 0.0)
             assert all(each.leg and each.cause for each in (*missing.limitations, *grant.limitations))
@@ -990,7 +1012,7 @@ def test_a_foot_of_a_robot_that_is_put_down_has_not_looked_for_the_ground_yet():
 
 def test_a_command_that_leads_back_ends_the_tries_at_an_obstacle():
     missing = MissingGround(NAMES)
-    missing.stopped(1, REST[1], REST[1] + 0.05)
+    missing.stopped(1, REST[1], REST[1] + 0.05, 0j)
     limited(missing, 0.1, 0.0, 0.0)
     assert missing.tries(1, REST[1])
     limited(missing, -0.1, 0.0, 0.0)

@@ -137,7 +137,9 @@ class PostureFeedback:
         (velocity, feet, stands, pace), fastest = move, self._scale * _MOST_CLIMB
         climb = min(max(_HEIGHT_GAIN * (plane.height + self.raised), -fastest), fastest)
         climb += plane.slope_x * velocity.real + plane.slope_y * velocity.imag
-        even = (_SLOPES[1] - math.hypot(plane.slope_x, plane.slope_y)) / (_SLOPES[1] - _SLOPES[0])
+        # A tilted body sees a slope where the ground is level.
+        slope = min(math.hypot(seen.slope_x, seen.slope_y) for seen in (plane, plane.levelled(tilt)))
+        even = (_SLOPES[1] - slope) / (_SLOPES[1] - _SLOPES[0])
         quick = _SLOW + (1 - _SLOW) * min(pace, max(even, 0.0))
         along = (-math.atan(plane.slope_y), math.atan(plane.slope_x))
         if tilt is None or self._share is None:

@@ -152,6 +152,17 @@ class LegOdometry:
         off = [(x - wanted_x, y - wanted_y, z - wanted_z) for (x, y, z), (wanted_x, wanted_y, wanted_z) in feet]
         return {leg: off[leg] for leg in legs if measured[leg] is not None}
 
+    def lag(self, valid: ValidReadings, angles: Float[np.ndarray, "legs 3"], yaw: float, leg: int) -> complex:
+        """Return how far a foot is from where it is commanded, horizontally in G; 0 where that is not measured [m].
+
+        Parameters
+        ----------
+        valid, angles, yaw, leg : ValidReadings, array of shape (legs, 3), float, int
+            The readings; commanded joint angles [rad]; yaw of the body [rad]; the leg.
+        """
+        off = self.feet_off_commanded([leg], valid, angles)
+        return complex(*off[leg][:2]) * cmath.exp(1j * yaw) if off else 0j
+
     def _note_slip(self, feet: list[complex], moved: dict[int, complex], dt: float) -> None:
         """Take note of what the motion over each foot differs by from that of a body that turns over all of them."""
         speeds, share = [0.0] * len(self.slip), min(dt / _SLIP_TIME, 1.0)

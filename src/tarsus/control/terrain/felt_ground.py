@@ -137,20 +137,13 @@ class FeltGround:
         if self.missing.stranded and all(down):
             state = timing.with_first_lift(state, self.missing.stranded[0])
         pace = self.support.pace
-        off = partial(self._off_commanded, state)
-        state, landed = met_ground(
-            state, self.body, self.missing, stopped=stopped, off_commanded=off, timing=timing, pace=pace
-        )
+        lag = partial(self.body.odometry.lag, valid, angles, state.yaw + float(state.moved_posture[5]))
+        state, landed = met_ground(state, self.body, self.missing, stopped=stopped, lag=lag, timing=timing, pace=pace)
         waits = self.missing.refuses and self.support.halts
         if self.missing.tips or self.condition.in_air or waits:
             state, swung = put_down(state, timing=timing, pace=pace)
             landed += swung
         return state, landed
-
-    def _off_commanded(self, state: GaitState, leg: int) -> complex:
-        """Return how far a foot is from where it is commanded, in G [m]; 0 where that is not measured."""
-        x, y, _ = self.body.odometry.feet_off_commanded([leg], self.measured, self._commanded).get(leg, _AS_COMMANDED)
-        return complex(x, y) * cmath.exp(1j * (state.yaw + float(state.moved_posture[5])))
 
     def inputs(self, tick: TickState, transitions: TransitionExecutor, excluded: list[int], dt: float) -> FeltInputs:
         """Return what the feet and the body do in a tick.
@@ -273,9 +266,11 @@ class FeltGround:
         goal = place if down else state.in_heading(complex(state.foothold[leg]))
         reach, rests = self.body.reach, self._rests and self.support.held
         lowest = max(reach.lowest[leg], self.ground.at(goal) - _NEAR) if rests else reach.lowest[leg]
-        room = (lowest if searches else None, reach.highest_on_way(leg, place, goal))
+        straight, bowed = (reach.highest_on_way(leg, place, goal, bowed=bowed) for bowed in (False, True))
         clears, back = not self._loads.estimated, self.missing.places.get(leg)
+        room = (lowest if searches else None, straight)
         found = self.ground.under(place, goal, state.elevation, room, clears=clears)
+        found = found._replace(bow=heading * reach.bows[leg], bowed=state.elevation + bowed)
         return found if back is None else found._replace(place=state.origin + back * heading)
 
     def _decide_on_support(self, footing: Footing, due: list[bool] | None, dt: float, swing_time: float) -> None:

@@ -30,10 +30,10 @@ _ROUNDING = 1e-9
 # How far a foot has risen that meets an obstacle [m].
 _LIFTED = 0.01
 # After a collision: how much higher the foot rises [m], in which time [s], and how far it is drawn back [m].
-_HIGHER, _RISING, _DRAWN_BACK = 0.025, 0.12, 0.008
+_HIGHER, _RISING, _DRAWN_BACK = 0.04, 0.12, 0.008
 # Of a foot that collides again: how far it is from its foothold at least, and past its collision at most, where it does
 # not touch the obstacle's top [m]; the speed with which it is drawn back [m/s].
-_SHORT, _PAST, _DRAWS_BACK = 0.02, 0.01, 1.0
+_SHORT, _PAST, _DRAWS_BACK = 0.02, 0.03, 1.0
 # A foot that is deeper, on even ground, bears no load that is not felt, whatever its shin rests on [m]; nor does one on
 # rough ground that is this deep, over the body height.
 _HANGS, _HANGS_LOW = 0.05, 0.9
@@ -47,7 +47,7 @@ def met_ground(
     missing: MissingGround,
     *,
     stopped: list[int],
-    off_commanded: Callable[[int], complex],
+    lag: Callable[[int], complex],
     timing: StepTiming,
     pace: float,
 ) -> tuple[GaitState, list[int]]:
@@ -59,7 +59,7 @@ def met_ground(
         The gait state; contacts, expected ground and reach. Its roughness takes note of footholds and collisions.
     missing, stopped : MissingGround, list of int
         Decides where feet that are stopped again try next; legs that are stopped on their way.
-    off_commanded : callable
+    lag : callable
         Returns how far the foot of a leg is from where it is commanded, in G [m].
     timing, pace : StepTiming, float
         The gait and its frequency; rate of the steps, 0 to 1.
@@ -71,13 +71,13 @@ def met_ground(
         if down or phase <= _CLEAR:
             rises = foot.top > float(state.ground_height[leg]) or foot.slide
             if (contacts.feels(leg) or leg in stopped) and missing.tries(leg, places[leg]) and not rises:
-                state = _trying_again(state, leg, missing, reach, state, off_commanded(leg))
+                state = _trying_again(state, leg, missing, reach, state, lag(leg))
             continue
         leaves = missing.obstacles.leaves(state.in_heading(complex(state.foothold[leg])) - places[leg])
         if not leaves and _collides_again(
             state, leg, side=contacts.feels(leg) and contacts.lifted[leg], stopped=leg in stopped, scale=reach.scale
         ):
-            state = _trying_again(state, leg, missing, reach, _landed(state, leg, timing, pace), off_commanded(leg))
+            state = _trying_again(state, leg, missing, reach, _landed(state, leg, timing, pace), lag(leg))
             landed.append(leg)
         elif phase > _LANDING or (pace < HALTING and _stands_below(state, leg, contacts, scale=reach.scale)):
             # Contact that has not ceased since lift-off tells nothing: the foot lands where ground is expected. Nor
@@ -98,9 +98,7 @@ def met_ground(
                 landed.append(leg)
         elif (meets or leg in stopped) and not leaves and _collides(state, leg, contacts, scale=reach.scale):
             body.roughness.collided()
-            state = _rising_again(
-                state, leg, _highest(state, leg, reach), timing, off_commanded(leg), scale=reach.scale
-            )
+            state = _rising_again(state, leg, _highest(state, leg, reach), timing, lag(leg), scale=reach.scale)
     return state, landed
 
 
@@ -154,16 +152,19 @@ def _stands_below(state: GaitState, leg: int, contacts: FootContacts, *, scale: 
 def _collides_again(state: GaitState, leg: int, *, side: bool, stopped: bool, scale: float) -> bool:
     """Return whether a foot that has risen after a collision has not got past the obstacle."""
     start, foot = state.felt[leg].drawn_back, complex(state.foot[leg])
-    short = abs(state.foothold[leg] - foot) < scale * _SHORT
-    if start is None or state.swing_phase[leg] <= state.felt[leg].top_phase or short:
+    if start is None or state.swing_phase[leg] <= state.felt[leg].top_phase:
         return False
-    return stopped if abs(foot - start) > scale * (_DRAWN_BACK + _PAST) else side
+    # A foot that does not go down meets no ground.
+    falls = state.felt[leg].speed < 0.0
+    short = abs(state.foothold[leg] - foot) < scale * _SHORT
+    past = abs(foot - start) > scale * (_DRAWN_BACK + _PAST)
+    return not (falls and short) and ((past and stopped) or (side and not (past and falls)))
 
 
 def _rising_again(
-    state: GaitState, leg: int, highest: float, timing: StepTiming, off: complex, *, scale: float
+    state: GaitState, leg: int, highest: float, timing: StepTiming, lag: complex, *, scale: float
 ) -> GaitState:
-    """Return the state with a foot that draws back from an obstacle, off where it is commanded, and rises higher."""
+    """Return the state with a foot that lags behind its command: it draws back from an obstacle and rises higher."""
     height, foot = float(state.ground_height[leg]), complex(state.foot[leg])
     top = state.felt[leg].top
     way = complex(state.foothold[leg]) - foot
@@ -172,7 +173,7 @@ def _rising_again(
         leg,
         top=min((height if math.isnan(top) else max(top, height)) + scale * _HIGHER, max(highest, height)),
         top_phase=min(float(state.swing_phase[leg]) + _RISING / timing.swing_time, 1.0),
-        drawn_back=foot + off - scale * _DRAWN_BACK * way / max(abs(way), 1e-9),
+        drawn_back=foot + lag - scale * _DRAWN_BACK * way / max(abs(way), 1e-9),
     )
     return state._replace(felt=felt)
 
@@ -184,13 +185,15 @@ def _highest(state: GaitState, leg: int, reach: Reach) -> float:
 
 
 def _trying_again(
-    state: GaitState, leg: int, missing: MissingGround, reach: Reach, after: GaitState, off: complex
+    state: GaitState, leg: int, missing: MissingGround, reach: Reach, after: GaitState, lag: complex
 ) -> GaitState:
     """Return the state with a foot that is stopped again: it is drawn back, and tries again while the walk stands."""
     height, turn = float(state.ground_height[leg]), cmath.exp(1j * state.yaw)
     foot, goal = (state.in_heading(complex(places[leg])) for places in (state.foot, state.foothold))
-    top = min(height + reach.scale * _HIGHER, max(_highest(state, leg, reach), height))
-    back = missing.stopped(leg, foot + off / turn, goal)
+    back = missing.stopped(leg, foot + lag / turn, goal, complex(reach.bows[leg]))
+    place = missing.places[leg]
+    highest = state.elevation + reach.highest_on_way(leg, place, missing.obstacles.ends(leg, place))
+    top = min(height + reach.scale * _HIGHER, max(highest, height))
     slide = reach.scale * _DRAWS_BACK * turn * back / max(abs(back), 1e-9)
     return after._replace(felt=_with(after.felt, leg, speed=0.0, acceleration=0.0, top=top, slide=slide))
 

@@ -246,9 +246,9 @@ class MissingGround:
         self.obstacles.forget(leg)
         self.places.pop(leg, None)
 
-    def stopped(self, leg: int, foot: complex, goal: complex) -> complex:
+    def stopped(self, leg: int, foot: complex, goal: complex, bow: complex) -> complex:
         """Decide where a foot tries next that is stopped here on its way to a goal; return the way back [m]."""
-        start, self.places[leg] = self.obstacles.stopped(leg, foot, goal)
+        start, self.places[leg] = self.obstacles.stopped(leg, foot, goal, bow)
         ends = not self.obstacles.tries(leg)
         self._cause = self._names[leg], "an obstacle stops the foot" + ends * " that is higher than the leg steps"
         if ends:

@@ -1,4 +1,4 @@
-"""Obstacles: feet that are stopped on their way try again, then beside it, and are put down before it in the end."""
+"""Obstacles: feet that are stopped on their way try again, swung out, then beside it, and are put down before it."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ class Obstacles:
         """Return whether a way of a foot, in the heading frame, leads away from the obstacle that was found."""
         return (way * self.found.conjugate()).real < 0.0
 
-    def stopped(self, leg: int, foot: complex, goal: complex) -> tuple[complex, complex]:
+    def stopped(self, leg: int, foot: complex, goal: complex, bow: complex) -> tuple[complex, complex]:
         """Decide where a foot tries next that is stopped here on its way to a goal.
 
         Parameters
@@ -52,6 +52,8 @@ class Obstacles:
             The leg.
         foot, goal : complex
             Where the foot is, and where it was to go, in the heading frame [m].
+        bow : complex
+            How far the foot may swing out: there the leg reaches higher [m].
 
         Returns
         -------
@@ -65,13 +67,19 @@ class Obstacles:
         if stops >= _STOPS + _SIDES:
             self.found = way
             return start, start
-        if stops < _STOPS:
+        if stops < _STOPS and not bow:
             return start, goal
-        # Towards the body first: there the leg is steeper.
-        inwards = -(start * way.conjugate()).imag * (-1) ** (stops - _STOPS)
-        side = 1j * way * math.copysign(self._scale * _BESIDE, inwards)
+        side = bow
+        if stops >= _STOPS:
+            # Towards the body first: there the leg is steeper.
+            inwards = -(start * way.conjugate()).imag * (-1) ** (stops - _STOPS)
+            side = 1j * way * math.copysign(self._scale * _BESIDE, inwards)
         self._goals[leg] = goal + side
         return start, start + side
+
+    def ends(self, leg: int, place: complex) -> complex:
+        """Return where a foot goes on to from this place [m]; the same place if it stays there."""
+        return self._goals.get(leg, place)
 
     def go_on(self, arrived: Callable[[int], bool]) -> dict[int, complex]:
         """Return where feet go on to that have arrived beside their ways [m]."""

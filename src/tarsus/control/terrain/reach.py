@@ -1,4 +1,4 @@
-"""How low and how high each foot may stand: the heights at which the leg reaches the whole of its stroke."""
+"""How low and how high each foot may stand and swing: the heights at which the leg reaches the whole of its stroke."""
 
 from __future__ import annotations
 
@@ -23,8 +23,12 @@ _STROKE_STEP, _TURNING_ARM = 0.01, 0.2
 _HANGING, _LOWER = 0.002, 0.03
 # Room over the ground that a leg's greatest height leaves for its swing, over the swing height; while a foot hangs.
 _CLEARANCE, _HANGING_CLEARANCE = 1.5, 0.75
+# How far a foot swings out across its stroke at most, so that it reaches higher [m].
+_BOW = 0.03
 # Length of femur and tibia from which on lengths and speeds of walks that feel the ground are as given [m].
 _USUAL_LEG = 0.19
+# Stroke below which it has no direction [m], and decimals of a distance from a line that is 0 [m].
+_NO_STROKE, _DECIMALS = 1e-9, 6
 
 
 class Reach:
@@ -39,6 +43,8 @@ class Reach:
     ----------
     lowest, highest : list of float
         Least and greatest height of each foot in the heading frame [m].
+    bows : complex array, shape (legs,)
+        How far each foot may swing out across its stroke, in the heading frame [m].
     rest, strokes : complex array, shape (legs,)
         Rest foothold and stroke of each foot, in the heading frame [m].
     stroke, scale : float
@@ -49,8 +55,9 @@ class Reach:
         self.lowest, self.highest = [0.0] * robot.legs, [0.0] * robot.legs
         self.stroke, self.strokes = 0.0, np.zeros(robot.legs, dtype=complex)
         self.rest: Complex[np.ndarray, "legs"] = self.strokes
-        # Greatest height of each foot at the places of its stroke [m].
-        self._tops = [(0.0,) * len(STROKE_PLACES)] * robot.legs
+        # Greatest height of each foot at the places of its stroke, and beside them, swung out [m].
+        self._tops = self._bowed = [(0.0,) * len(STROKE_PLACES)] * robot.legs
+        self.bows = self.strokes
         self.scale = min(float((robot.femur + robot.tibia).mean()) / _USUAL_LEG, 1.0)
         self._robot = robot
         self._key: tuple[float, ...] = ()
@@ -73,7 +80,12 @@ class Reach:
         if key != self._key or rest is not self.rest:
             self._key, self.rest, strokes = key, rest, complex(x, y) + 1j * arc / _TURNING_ARM * rest
             self.stroke, self.strokes = float(np.abs(strokes).max()) / 2, strokes
-            lowest, highest = reachable_heights(self._robot, posture, rest, strokes)
+            # Outwards, from the line along the stroke through the body's middle; nowhere from a foot on that line.
+            along = strokes / np.maximum(np.abs(strokes), _NO_STROKE)
+            self.bows = self.scale * _BOW * 1j * along * np.sign((rest * along.conj()).imag.round(_DECIMALS))
+            (lowest, lowest_beside), (highest, highest_beside) = reachable_heights(
+                self._robot, posture, np.array([rest, rest + self.bows]), strokes
+            )
             # Ends of strokes beyond the limits of the coxa are not walked; a leg that reaches nowhere keeps its reach.
             walked = lowest < highest
             kept = ~walked.any(axis=0)
@@ -81,9 +93,11 @@ class Reach:
             most = highest.min(axis=0, where=walked, initial=np.inf)
             self.lowest = np.where(kept, self.lowest, least).tolist()
             self.highest = np.where(kept, self.highest, most).tolist()
-            self._tops = [tuple(heights) for heights in np.where(walked, highest, self.highest).T.tolist()]
+            tops = np.where(walked, highest, self.highest)
+            bowed = np.where(lowest_beside < highest_beside, np.maximum(highest_beside, tops), tops)
+            self._tops, self._bowed = ([tuple(leg) for leg in heights.T.tolist()] for heights in (tops, bowed))
 
-    def highest_on_way(self, leg: int, start: complex, end: complex) -> float:
+    def highest_on_way(self, leg: int, start: complex, end: complex, *, bowed: bool = False) -> float:
         """Return the greatest height of a foot on a way: front legs reach higher ahead, rear legs behind [m].
 
         Parameters
@@ -92,18 +106,21 @@ class Reach:
             The leg.
         start, end : complex
             Where the way begins and ends, in the heading frame [m].
+        bowed : bool
+            Whether the foot swings out on the way.
         """
-        return min(self._highest_at(leg, start), self._highest_at(leg, end))
+        return min(self._highest_at(leg, start, bowed=bowed), self._highest_at(leg, end, bowed=bowed))
 
-    def _highest_at(self, leg: int, place: complex) -> float:
-        """Return the greatest height of a foot at a place, by how far along its stroke that is [m]."""
-        stroke = complex(self.strokes[leg])
+    def _highest_at(self, leg: int, place: complex, *, bowed: bool) -> float:
+        """Return the greatest height of a foot at a place, by how far along and beside its stroke that is [m]."""
+        stroke, bow = complex(self.strokes[leg]), complex(self.bows[leg])
         if not stroke:
             return self.highest[leg]
-        ahead = ((place - complex(self.rest[leg])) * stroke.conjugate()).real / abs(stroke) ** 2
-        rear, middle, front = self._tops[leg]
-        share = min(2 * abs(ahead), 1.0)
-        return middle + share * ((front if ahead > 0 else rear) - middle)
+        off = place - complex(self.rest[leg])
+        ahead = (off * stroke.conjugate()).real / abs(stroke) ** 2
+        beside = 1.0 if bowed or not bow else min(max((off * bow.conjugate()).real / abs(bow) ** 2, 0.0), 1.0)
+        straight, out = (_along(tops[leg], ahead) for tops in (self._tops, self._bowed))
+        return straight + beside * (out - straight)
 
     def highest_stand(self, swing_height: float, *, hangs: bool = False) -> list[float]:
         """Return the greatest height of each foot on the ground that leaves room for its swing [m].
@@ -114,7 +131,7 @@ class Reach:
             The swing height [m]; whether any foot hangs, for which the body has to be lowered.
         """
         room = (_HANGING_CLEARANCE if hangs else _CLEARANCE) * swing_height
-        return [height - room for height in self.highest]
+        return [min(heights) - room for heights in self._bowed]
 
     def hangs(self, leg: int, height: float) -> bool:
         """Return whether a leg with its foot at a height in the heading frame [m] is at the end of its reach."""
@@ -137,3 +154,9 @@ class Reach:
         for leg in hanging:
             known[leg] = self.lowest[leg] - self.scale * _LOWER
         return [height - plane.height for height in known]
+
+
+def _along(tops: tuple[float, ...], ahead: float) -> float:
+    """Return the greatest height at a place so far ahead of the middle of a stroke, over its length [m]."""
+    rear, middle, front = tops
+    return middle + min(2 * abs(ahead), 1.0) * ((front if ahead > 0 else rear) - middle)

@@ -29,6 +29,8 @@ class FeltFoot(NamedTuple):
         Velocity in G of a foot that has landed before the end of its way, which decays [m/s].
     drawn_back : complex or None
         Where in G a foot that has met an obstacle is drawn back to while it rises [m]; None without one.
+    bow : complex
+        How far a swinging foot swings out on its way, so that its leg reaches the top, in G [m].
     """
 
     speed: float = 0.0
@@ -37,6 +39,7 @@ class FeltFoot(NamedTuple):
     top_phase: float = 0.0
     slide: complex = 0j
     drawn_back: complex | None = None
+    bow: complex = 0j
 
 
 class GroundUnder(NamedTuple):
@@ -47,7 +50,7 @@ class GroundUnder(NamedTuple):
     expected : float
         Where the ground is expected under the foothold.
     lowest, highest : float
-        Below and above which the foot does not go.
+        Below and above which the foot does not go on a straight way.
     way : float
         How high the ground is at most on the way there.
     steep : bool
@@ -56,6 +59,8 @@ class GroundUnder(NamedTuple):
         Where in G a foot steps back to that has found no ground [m].
     clears : bool
         Whether a foot that has met an obstacle stays up until it is past that.
+    bow, bowed : complex, float
+        How far the foot may swing out on its way, in G [m], and above which height it does not go then.
     """
 
     expected: float
@@ -65,6 +70,8 @@ class GroundUnder(NamedTuple):
     steep: bool = False
     place: complex | None = None
     clears: bool = False
+    bow: complex = 0j
+    bowed: float = -math.inf
 
 
 class FeltInputs(NamedTuple):

@@ -48,9 +48,11 @@ _NEARS, _PRESSED, _PRESSED_DEEP = 0.007, 0.004, 0.4
 # Room over known ground on the way of a foot that goes down [m].
 _OVER = 0.015
 # How far past a collision a foot goes down again [m].
-_PAST = 0.03
+_PAST = 0.05
+# Rounding of a height [m].
+_ROUNDING = 1e-9
 # Speeds of a foot that steps back, up and back [m/s].
-_RISING, _BACK = 0.3, 0.4
+_RISING, _BACK = 0.45, 0.6
 # Greatest changes of speed: of feet in the air, of the body, of feet on the ground, and of their slide [m/s^2].
 _FOOT_ACCELERATION, _BODY_ACCELERATION, _STANDING_ACCELERATION, _STOPPING = 6.0, 1.0, 15.0, 12.0
 
@@ -81,7 +83,7 @@ def moved_vertically(state: GaitState, inputs: StepInputs, dt: float) -> GaitSta
             feet[leg] = foot._replace(speed=0.0, acceleration=0.0)
         elif down:
             # On the ground it moves by its turn about the body, its drift and its slide.
-            before, _, top, _, slide, _ = foot
+            before, top, slide = foot.speed, foot.top, foot.slide
             place = places[leg]
             arm = place - origin
             wanted = -(arm * across).real
@@ -165,7 +167,7 @@ def _swinging(
 ) -> tuple[float, FeltFoot]:
     """Return the height of a foot in the air, and its state: it rises to its top, then goes down."""
     phase, swing_time, lifted_at, place = swing
-    speed, acceleration, top, top_phase, slide, drawn_back = foot
+    speed, acceleration, top, top_phase, slide, drawn_back, bow = foot
     rough = min(felt.depth / (felt.scale * _ROUGH), 1.0)
     part = max(_DESCENT + rough * (_ROUGH_DESCENT - _DESCENT) - felt.late / swing_time, _SHORTEST_DESCENT)
     if math.isnan(top) or (phase < top_phase and drawn_back is None):
@@ -176,14 +178,16 @@ def _swinging(
         fits = min(max(falls, lifted_at + _LEAST_RISE * felt.swing_height), rises)
         start = lifted_at - _BEHIND * max(lifted_at - under.expected, 0.0)
         over = max(start, under.expected, under.way) + felt.swing_height
-        top = max(min(over, under.highest, fits), height)
+        highest = max(under.highest, under.bowed)
+        top = max(min(over, highest, fits), height)
+        bow = under.bow * max(min(top, highest) - under.highest, 0.0) / max(highest - under.highest, _ROUNDING)
         if under.steep and 0.0 < phase < _RISING_FIRST:
             drawn_back, top_phase = place, _STEEP_TOP_PHASE
     if phase < top_phase:
         time = dt * felt.pace
         whole = (top_phase - phase) * swing_time + time
         height, speed, acceleration = quintic((height, speed, acceleration), top, whole, time / whole)
-        return height, FeltFoot(speed, acceleration, top, top_phase, slide, drawn_back)
+        return height, FeltFoot(speed, acceleration, top, top_phase, slide, drawn_back, bow)
     descent = (top - under.expected + felt.depth) / (part * swing_time) * felt.pace
     fastest = min(max(felt.scale * _LOWERING, descent), felt.lowering, _fastest_contact(height - under.expected, felt))
     after = _towards(speed, -fastest, _FOOT_ACCELERATION * dt)
@@ -195,7 +199,7 @@ def _swinging(
     if drawn_back is not None and under.clears and abs(place - drawn_back) < felt.scale * _PAST:
         lowest = max(lowest, height)
     height, after = _no_lower(height + (speed + after) / 2 * dt, after, height, lowest)
-    return height, FeltFoot(after, 0.0, top, top_phase, slide, drawn_back)
+    return height, FeltFoot(after, 0.0, top, top_phase, slide, drawn_back, bow)
 
 
 def _fastest_contact(over: float, felt: FeltInputs) -> float:

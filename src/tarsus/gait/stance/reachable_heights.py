@@ -26,9 +26,9 @@ _LEVEL = len(_TRIED) // 2
 def reachable_heights(
     robot: Robot,
     posture: Float[np.ndarray, "_"],
-    rest: Complex[np.ndarray, "legs"],
+    rest: Complex[np.ndarray, "*batch legs"],
     strokes: Complex[np.ndarray, "legs"],
-) -> tuple[Float[np.ndarray, "3 legs"], Float[np.ndarray, "3 legs"]]:
+) -> tuple[Float[np.ndarray, "*batch 3 legs"], Float[np.ndarray, "*batch 3 legs"]]:
     """Return the least and the greatest height of each foot at the places of its stroke, in the heading frame [m].
 
     Both are 0 at a place that the leg does not reach on level ground.
@@ -39,7 +39,7 @@ def reachable_heights(
         A single robot.
     posture : array, shape (7,) or more
         Posture of the body.
-    rest : complex array, shape (legs,)
+    rest : complex array, shape (..., legs)
         Rest footholds in the heading frame [m].
     strokes : complex array, shape (legs,)
         Stroke of each foot about its rest foothold [m].
@@ -47,13 +47,13 @@ def reachable_heights(
     g = robot.geometry
     levels = _TRIED * float(np.max(g.femur + g.tibia))
     stance = StanceGeometry(rest, np.array(rotation_rows(*posture[3:SWING_HEIGHT].tolist())), posture[:3], 0.0)
-    places = rest + np.array(STROKE_PLACES)[:, None, None] * strokes
+    places = rest[..., None, None, :] + np.array(STROKE_PLACES)[:, None, None] * strokes
     solution = stance.solve(robot.geometry, places.real, places.imag, levels[:, None])
     beyond = np.asarray(~(joint_margin(g, solution) >= 0))
     ends = []
-    for sign, way in ((-1, beyond[:, _LEVEL::-1]), (1, beyond[:, _LEVEL:])):
+    for sign, way in ((-1, beyond[..., _LEVEL::-1, :]), (1, beyond[..., _LEVEL:, :])):
         # The last level before the first one that is out of reach.
-        steps = np.where(way.any(axis=1), way.argmax(axis=1) - 1, _LEVEL)
+        steps = np.where(way.any(axis=-2), way.argmax(axis=-2) - 1, _LEVEL)
         ends.append(levels[_LEVEL + sign * np.maximum(steps, 0)])
     return ends[0], ends[1]
 
