@@ -17,6 +17,7 @@ from tarsus.kinematics.mass import centre_of_mass, total_mass
 from tarsus.robot.file import list_robots, load_robot
 from tarsus.robot.robot import JOINTS
 from tarsus.simulation.robot_model import model
+from tarsus.simulation.servos.servo_table import ServoTable
 
 WITH_MASSES = [name for name in list_robots() if load_robot(name).has_masses]
 
@@ -140,6 +141,7 @@ def test_an_mjcf_file_stands_under_its_own_actuators(servos):
     built = mujoco.MjModel.from_xml_string(to_mjcf(robot, servos=servos))
     state = mujoco.MjData(built)
     assert built.body_subtreemass[0] == pytest.approx(float(total_mass(robot)))
+    np.testing.assert_allclose(built.actuator_gainprm[:, 0], ServoTable.of(robot, servos).stiffness, rtol=1e-4)
     controller = tarsus.RobotController(robot)
     state.qpos[2] = controller.output.body.position[2] + 0.01
     state.qpos[7:] = state.ctrl[:] = controller.output.angles.ravel()

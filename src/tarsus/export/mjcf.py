@@ -21,8 +21,9 @@ def to_mjcf(robot: Robot, *, terrain: Terrain | None = None, servos: Any = "cata
     """Return a robot on a terrain as an MJCF document.
 
     The model is that of `tarsus.simulation.model`, with position actuators in place of the servos of
-    `SimulatedPlant`: of their stiffness, within their stall torques. Backlash, dead band, delays and the torque-speed
-    line beyond its damping are not in it. The document needs no other file, except for height fields.
+    `SimulatedPlant`: of their stiffness, that of control loop and gears in series, within their stall torques.
+    Backlash, dead band, delays and the torque-speed line beyond its damping are not in it. The document needs no other
+    file, except for height fields.
 
     Parameters
     ----------
