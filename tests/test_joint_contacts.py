@@ -115,6 +115,53 @@ def test_servos_that_are_slower_than_those_of_the_file_stop_no_swing(dt):
     assert 0.01 < estimator.lag < 0.06
 
 
+def estimated(measure, *, seconds=6.0):
+    """The estimator, and contacts and feet that should stand in each tick, of angles that are measured like this."""
+    controller, estimator, found = tarsus.WalkController(STRIDER), JointContacts(STRIDER), []
+    for tick in range(round(seconds / DT)):
+        angles = controller.step((0.1, 0.0, 0.0), DT)
+        state = controller._tick.gait
+        measured = angles + np.outer(measure(tick * DT, state), (0.0, 1.0, 0.0))
+        valid = ValidReadings(joint_angles=measured.tolist())
+        found.append((estimator.contacts(valid, angles, state, DT), state.down.tolist(), state.swing_phase.tolist()))
+    return estimator, found
+
+
+def sagging(_, state):
+    # Behind their commands by no time, and raised by the ground where they stand.
+    return 0.02 * state.down
+
+
+def test_servos_that_are_sooner_than_those_of_the_file_tell_contacts():
+    estimator, found = estimated(sagging)
+    assert -0.01 <= estimator.lag < -0.005
+    # Nothing is told before legs have swung freely.
+    assert not any(contacts for contacts, _, _ in found[:40])
+    for contacts, down, phases in found[300:]:
+        clear = [on or 0.2 < phase < 0.5 for on, phase in zip(down, phases, strict=True)]
+        told = zip(contacts, down, clear, strict=True)
+        assert np.mean([touches == on for touches, on, known in told if known]) > 0.6
+
+
+def test_a_robot_that_its_legs_do_not_bear_any_more_has_unknown_contacts_until_they_do():
+    _, found = estimated(lambda time, state: sagging(time, state) * (not 3.0 <= time < 4.0))
+    assert all(contacts is not None for contacts, _, _ in found[250:300])
+    # It may be between two steps for half a second, and in the air after that: but nothing tells so for certain.
+    assert all(contacts is not None for contacts, _, _ in found[300:340])
+    assert all(contacts is None for contacts, _, _ in found[370:400])
+    assert all(contacts is not None for contacts, _, _ in found[550:])
+
+
+def test_a_foot_that_is_caught_leaves_contacts_known():
+    def caught(time, state):
+        behind = sagging(time, state)
+        behind[0] -= 0.3 * (3.0 < time < 3.6 and not state.down[0])
+        return behind
+
+    _, found = estimated(caught)
+    assert all(contacts is not None for contacts, _, _ in found[250:])
+
+
 def test_a_leg_without_a_measured_angle_leaves_contacts_unknown():
     estimator, controller = JointContacts(STRIDER), tarsus.WalkController(STRIDER)
     angles, state = controller.angles, controller._tick.gait

@@ -127,6 +127,21 @@ def test_on_a_floor_the_walk_goes_on_with_what_is_left(missing):
     assert not told
 
 
+@pytest.mark.no_cover
+@pytest.mark.parametrize(("name", "speed"), [("phantomx", 0.05), ("phoenix", 0.1), ("strider", 0.15)])
+def test_joint_angles_without_contacts_tell_of_a_floor_what_the_commands_do(name, speed):
+    robot = tarsus.load_robot(name)
+    plant, controller = PLANT(robot, to_mjcf(robot)), tarsus.RobotController(robot)
+    plant.start(controller.output)
+    for _ in range(600):
+        found = dataclasses.replace(plant.step(controller.output, 0.01), contacts=None)
+        output = controller.step((speed, 0.0, 0.0), 0.01, found)
+        assert np.hypot(*found.attitude) < np.radians(3)
+        assert not any("air" in limitation.cause for limitation in output.limitations)
+    assert plant.data.qpos[0] > 0.9 * output.body.position[0]
+    assert plant.data.qpos[0] > 0.9 * 6.0 * speed
+
+
 def test_old_and_impossible_readings_are_named():
     def spoilt(_, found):
         angles = np.where(np.arange(6)[:, None] == 2, np.nan, found.joint_angles)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections import deque
 from typing import TYPE_CHECKING
 
@@ -9,7 +10,7 @@ import numpy as np
 
 from tarsus.control.readings import ValidReadings
 from tarsus.control.walk.state import GaitState
-from tarsus.kinematics.mass import known_weight
+from tarsus.kinematics.mass import STANDARD_GRAVITY, known_weight
 from tarsus.load.compliant.joint_springs import JointSprings
 from tarsus.robot.robot import Robot
 
@@ -28,14 +29,16 @@ _CONTACT, _STANDS, _OBSTACLE = 0.12, -0.02, 0.3
 _NEW, _BORNE, _LONG = 0.06, 0.15, 0.03
 # Share of the torque that drives a joint by which the expected one may be wrong.
 _UNSURE = 0.1
-# From a command to the servo's effect: at first, and at most [s]; how fast it, the mean of free swings and the load
-# are learnt [1/s]; and the square of joint speeds below which that tells little of it [rad^2/s^2].
-_LAG, _LONGEST_LAG, _RATE, _MEAN_RATE, _SLOW = 0.005, 0.1, 2.0, 5.0, 2.0
+# From a command to the servo's effect: at first, at least, of servos that are stiffer than the file's, and at most [s];
+# how fast it, the mean of free swings and the load are learnt [1/s]; and the square of joint speeds below which that
+# tells little of it [rad^2/s^2].
+_LAG, _LEAST_LAG, _LONGEST_LAG, _RATE, _MEAN_RATE, _SLOW = 0.005, -0.01, 0.1, 2.0, 5.0, 2.0
 # Torques left over in free swing, over the load, below which servos are familiar and above which they are not; how
 # much faster these are learnt.
-_FAMILIAR, _STRANGE, _FASTER = 0.12, 0.2, 3.0
-# Load of all legs above which contacts are known, over weight times length of femur and tibia.
-_LEAST_LOAD = 0.1
+_FAMILIAR, _STRANGE, _FASTER = 0.1, 0.15, 3.0
+# Load of all legs above which contacts are known, over weight times length of femur and tibia; how long it may be half
+# of what it was [s]: something bears the robot, so what was learnt is wrong.
+_LEAST_LOAD, _UNBORNE = 0.1, 0.5
 # Steps of integration a tick, and for how long expected angles are kept [s].
 _STEPS, _KEPT = 4, 0.25
 
@@ -45,10 +48,11 @@ class JointContacts:
 
     Each femur is expected to follow as servos of the robot's file do without load: position control within torque and
     speed, dead band, inertia of rotor and links, and a lag that is learnt. What is left over, measured less expected
-    angle, times the stiffness is the torque of the ground. It is compared with that of the same leg in free swing,
-    which takes care of offsets of horns and of the leg's weight, and with the load of the standing legs. The tibia
-    tells less: its torque changes sign with the direction of the force. While the legs have not been seen to bear the
-    robot, as with ideal or emulated servos, or free swings not to follow what is expected, nothing is known.
+    angle, times the stiffness is the torque of the ground and of the leg's weight. It is compared with that of the same
+    leg in free swing, which takes care of offsets of horns, and with the load of the standing legs. The tibia tells
+    less: its torque changes sign with the direction of the force. Until free swings have been seen to follow what is
+    expected, and legs to bear the robot, which ideal or emulated servos do not tell, nothing is known; nor once legs do
+    not bear it any more, for longer than steps take: what was learnt is learnt anew, while the walk goes on without.
 
     Parameters
     ----------
@@ -73,6 +77,9 @@ class JointContacts:
         # The shank hangs down or outwards.
         links = mass[0] * com[0] ** 2 + mass[1] * (lengths**2 + com[1] ** 2)
         inertia = springs.rotor_inertia[:, 1] + links
+        # Moments of the links' weights on a level femur and shank.
+        near, far = STANDARD_GRAVITY * (mass[0] * com[0] + mass[1] * lengths), STANDARD_GRAVITY * mass[1] * com[1]
+        self._moments = near.tolist(), far.tolist()
         stiffness: Float[np.ndarray, "legs"] = springs.stiffness[:, 1]
         self._rates, self._stiffness = (stiffness / inertia, springs.damping[:, 1] / inertia), stiffness.tolist()
         self._columns = springs.stall_torque[:, 1] / stiffness, springs.dead_band[:, 1], stiffness
@@ -81,8 +88,8 @@ class JointContacts:
         self._expected = deque[list[tuple[float, float]]]()
         longest = float((lengths + np.asarray(robot.geometry.tibia)).max())
         self._least = _LEAST_LOAD * known_weight(robot) * longest
-        self.lag, self._load, self._left = _LAG, 0.0, 0.0
-        self._familiar, self._mean = True, [0.0] * robot.legs
+        self.lag, self._familiar, self._unborne = _LAG, False, 0.0
+        self._forget()
         # For how long each foot that should stand has borne load [s].
         self._borne = [2 * _LONG] * robot.legs
 
@@ -101,20 +108,27 @@ class JointContacts:
             The gait state; time since the last tick [s].
         """
         self._follow(angles[:, 1].tolist(), dt)
-        back, share = divmod((self.lag + valid.contact_age) / dt, 1.0)
-        recent, femurs = int(back) + 1, [leg[1] for leg in valid.joint_angles or () if leg is not None]
-        if recent >= len(self._expected) or len(femurs) < len(self._stiffness):
+        late, legs = (self.lag + valid.contact_age) / dt, [leg for leg in valid.joint_angles or () if leg is not None]
+        recent = max(int(late), 0) + 1
+        if recent >= len(self._expected) or len(legs) < len(self._stiffness):
             return None
+        share = late + 1 - recent
         (newer, driven), (older, _) = (zip(*self._expected[-index], strict=True) for index in (recent, recent + 1))
-        behind = zip(femurs, newer, older, self._stiffness, self._mean, strict=True)
-        off = [stiffness * (angle - new - share * (old - new)) - mean for angle, new, old, stiffness, mean in behind]
+        behind = zip(legs, newer, older, self._stiffness, *self._moments, self._mean, strict=True)
+        off = [
+            spring * (femur - new - share * (old - new)) + near * math.cos(femur) + far * math.cos(femur + tibia) - mean
+            for (_, femur, tibia), new, old, spring, near, far, mean in behind
+        ]
         stands, phases = state.down.tolist(), state.swing_phase.tolist()
         free = [leg for leg, on in enumerate(stands) if not on and _CLEAR < phases[leg] < _DOWNWARD]
         if free:
             self._learn(free, off, [(newer[leg] - older[leg]) / dt for leg in free], dt)
         load = sum(torque for torque, on in zip(off, stands, strict=True) if on)
-        if load > self._load / 2:
-            self._load += _MEAN_RATE * dt * (load - self._load)
+        borne = load > self._load / 2
+        self._load += borne * _MEAN_RATE * dt * (load - self._load)
+        self._unborne = (self._unborne + dt) * (not borne)
+        if self._unborne > _UNBORNE:
+            self._forget()
         self._familiar = self._left < (_STRANGE if self._familiar else _FAMILIAR) * max(self._load, self._least)
         if self._load < self._least or not self._familiar:
             return None
@@ -127,17 +141,23 @@ class JointContacts:
             touching.append((abs(torque) if rising else torque) > least + _UNSURE * abs(drive))
         return touching
 
+    def _forget(self) -> None:
+        """Begin to learn: loads, what is left over in free swing, and its mean [N m]."""
+        self._load, self._left, self._mean = 0.0, self._least, [0.0] * len(self._stiffness)
+        self._familiar, self._unborne = False, 0.0
+
     def _learn(self, free: list[int], off: list[float], speeds: list[float], dt: float) -> None:
         """Learn lag and mean torque of legs that swing freely, at these speeds of their femurs [rad/s]."""
-        # The further it is off, the less is it a familiar servo that is learnt of. Of another one all is learnt: a lag
-        # that is far from the first guess would never be found.
-        most, rate = _CONTACT * max(self._load, self._least), dt * (_RATE if self._familiar else _FASTER * _RATE)
+        # The further it is off, the less is it a familiar servo that is learnt of. Of another one more is learnt, as a
+        # lag that is far from the first guess would never be found, but no more than of a foot that is caught.
+        load, rate = max(self._load, self._least), dt * (_RATE if self._familiar else _FASTER * _RATE)
         product = square = 0.0
+        off = [min(max(torque, -_OBSTACLE * load), _OBSTACLE * load) for torque in off]
         for leg, speed in zip(free, speeds, strict=True):
-            usual = off[leg] / (1 + (off[leg] / most) ** 2) if self._familiar else off[leg]
+            usual = off[leg] / (1 + (off[leg] / (_CONTACT * load)) ** 2) if self._familiar else off[leg]
             product, square = product + usual / self._stiffness[leg] * speed, square + speed * speed
             self._mean[leg] += _MEAN_RATE * dt * usual
-        self.lag = min(max(self.lag - rate * product / (square + _SLOW), 0.0), _LONGEST_LAG)
+        self.lag = min(max(self.lag - rate * product / (square + _SLOW), _LEAST_LAG), _LONGEST_LAG)
         self._left += rate * (sum(abs(off[leg]) for leg in free) / len(free) - self._left)
 
     def _follow(self, commanded: list[float], dt: float) -> None:
