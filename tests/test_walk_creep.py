@@ -11,10 +11,10 @@ from sample_studio import Asked
 from tarsus.control.command import Command
 from tarsus.control.limitation import LimitationKind
 from tarsus.control.loop.run import run
+from tarsus.control.pose.pose_controller import NO_SHIFT
 from tarsus.control.robot_controller import RobotController
 from tarsus.control.walk_controller import WalkController
 from tarsus.control.walk_state import WalkState
-from tarsus.control.workspace.body_shift import NO_SHIFT
 from tarsus.errors import UnreachableError
 from tarsus.gait.gait import Gait
 from tarsus.kinematics.pose import Pose

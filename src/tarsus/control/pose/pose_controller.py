@@ -6,13 +6,17 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from tarsus.control.workspace.body_shift import NO_SHIFT
+from tarsus.control.filters import CriticallyDamped
+from tarsus.gait.body_shift import COEFFICIENTS
 from tarsus.gait.stance.stance_geometry import SWING_HEIGHT, sway_fraction
 
 if TYPE_CHECKING:
     from jaxtyping import Complex, Float
 
-__all__ = ["PoseController"]
+__all__ = ["NO_SHIFT", "PoseController"]
+
+NO_SHIFT = CriticallyDamped.still(np.zeros(2 * COEFFICIENTS))
+"""No body shift: coefficients, real and imaginary parts, shape (14,) [m]."""
 
 # Greatest bandwidth of the posture [rad/s], and the greatest speed and turning rate of the body [m/s, rad/s].
 _BANDWIDTH = 4.0

@@ -10,8 +10,8 @@ import numpy as np
 from tarsus.control.filters import CriticallyDamped
 from tarsus.control.pose.deflection_compensation import DeflectionCompensation
 from tarsus.control.pose.foot_rolling import FootRolling
+from tarsus.control.pose.pose_controller import NO_SHIFT
 from tarsus.control.walk.state import GaitState
-from tarsus.control.workspace.body_shift import NO_SHIFT
 from tarsus.gait.stance.stance_geometry import SWING_HEIGHT, Rows, rotation_rows
 from tarsus.kinematics.inverse import inverse_kinematics
 from tarsus.kinematics.scalar_solver import ScalarSolver

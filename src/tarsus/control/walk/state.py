@@ -13,8 +13,8 @@ from typing import TYPE_CHECKING, NamedTuple, TypeVar
 import numpy as np
 
 from tarsus.control.filters import CriticallyDamped
+from tarsus.control.pose.pose_controller import NO_SHIFT
 from tarsus.control.walk.felt_feet import FeltFoot, FeltInputs
-from tarsus.control.workspace.body_shift import NO_SHIFT
 from tarsus.gait.body_shift import shift_at
 from tarsus.gait.gait import Gait
 from tarsus.gait.stance.stance_geometry import rotation_rows, with_sway

@@ -8,8 +8,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from tarsus.control.pose.pose_controller import NO_SHIFT
 from tarsus.control.walk.state import PHASE_TOLERANCE, GaitState
-from tarsus.control.workspace.body_shift import NO_SHIFT
 from tarsus.gait.gait import Gait
 
 __all__ = ["NextLift", "StepTiming"]

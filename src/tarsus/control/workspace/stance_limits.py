@@ -10,13 +10,13 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from tarsus.control.incremental import Incremental
-from tarsus.control.workspace.body_shift import stance_shift, support_phases
 from tarsus.control.workspace.foot_workspace import foot_workspace
 from tarsus.gait.body_shift import shift_at
 from tarsus.gait.foot_polygons import NORMALS_CONJUGATE
 from tarsus.gait.gait import Gait
 from tarsus.gait.stance.stability import StabilityCheck, safe_fraction
 from tarsus.gait.stance.stance_geometry import StanceGeometry
+from tarsus.gait.stance.stance_shift import stance_shift, support_phases
 from tarsus.gait.stance.velocity_limits import VelocityLimits
 from tarsus.robot.robot import Robot
 

@@ -1,4 +1,4 @@
-"""Body shift of a live walk: it keeps the robot stable wherever its feet are in their polygons."""
+"""Body shift of a stance: it keeps the robot stable wherever its feet are in their polygons."""
 
 from __future__ import annotations
 
@@ -6,18 +6,14 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from tarsus.control.filters import CriticallyDamped
-from tarsus.gait.body_shift import COEFFICIENTS, edge_constraints, fitted_shift
+from tarsus.gait.body_shift import edge_constraints, fitted_shift
 from tarsus.gait.gait import Gait
 from tarsus.gait.stance.stance_geometry import StanceGeometry
 
 if TYPE_CHECKING:
     from jaxtyping import Bool, Complex, Float
 
-__all__ = ["NO_SHIFT", "stance_shift", "support_phases"]
-
-NO_SHIFT = CriticallyDamped.still(np.zeros(2 * COEFFICIENTS))
-"""No body shift: coefficients, real and imaginary parts, shape (14,) [m]."""
+__all__ = ["stance_shift", "support_phases"]
 
 _SAMPLES = 96
 # Phases of a swing at which the stability is examined.
