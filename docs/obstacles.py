@@ -32,8 +32,8 @@ EDGES, AHEAD, BACK = (0.5, 0.53, 0.56), 0.9, 0.4
 PACES = (0.25, 0.5)
 # Half length and width, height [m], and yaw [rad]: walls that no robot climbs, and a post in the way of a middle leg.
 OBSTACLES = {
-    "wall": ((0.5, 3.0, 0.15), 0.0),
-    "oblique wall": ((0.5, 3.0, 0.15), math.radians(30)),
+    "wall": ((0.5, 3.0, 0.25), 0.0),
+    "oblique wall": ((0.5, 3.0, 0.25), math.radians(30)),
     "post": ((0.02, 0.02, 0.08), 0.0),
 }
 # A leg that has not touched the obstacle for longer has let go of it [s].

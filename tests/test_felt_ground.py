@@ -169,7 +169,16 @@ def test_legs_reach_higher_beside_their_strokes_away_from_the_body():
         assert straight < half < out == reach.highest_on_way(leg, place, place, bowed=True)
         # Towards the body it is no lower than known along the stroke.
         assert reach.highest_on_way(leg, place - bow, place - bow) == straight
-    # Sideways, the strokes of the middle legs lead through the body, and those legs swing straight.
+    # A robot that stops keeps them, and with them the height of its body.
+    stands = reach.highest_stand(0.05)
+    reach.update(TickState(state, np.zeros(3)), rest, 0.5)
+    assert complex(reach.bows[0]) == pytest.approx(0.03j)
+    assert all(now >= before - 0.01 for before, now in zip(stands, reach.highest_stand(0.05), strict=True))
+    # In a narrow arc, the bows of the inner legs lead away from their coxae, too.
+    reach.update(TickState(state, np.array([0.05, 0.0, 0.2])), rest, 0.5)
+    out = rest - (STRIDER.mount_position[:, 0] + 1j * STRIDER.mount_position[:, 1])
+    assert np.all((out * reach.bows.conj()).real > 0)
+    # Sideways, the strokes of the middle legs lead through their coxae, and those legs swing straight.
     reach.update(TickState(state, np.array([0.0, 0.12, 0.0])), rest, 0.5)
     assert reach.bows[[1, 4]].tolist() == [0j, 0j]
     assert reach.highest_on_way(1, rest[1], rest[1], bowed=True) == reach.highest_on_way(1, rest[1], rest[1])

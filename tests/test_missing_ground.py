@@ -418,6 +418,12 @@ def test_a_foot_that_may_swing_out_tries_again_there_before_it_tries_other_sides
     assert missing.places[0] == pytest.approx(foot - 0.04 - 0.06j)
 
 
+def test_a_foot_that_is_stopped_at_its_goal_goes_straight_back_to_it():
+    missing = MissingGround(NAMES)
+    assert missing.stopped(0, REST[0], REST[0], 0j) == 0j
+    assert missing.places[0] == REST[0]
+
+
 def test_a_foot_that_has_got_past_an_obstacle_looks_for_the_ground_like_any_other():
     missing, goal = MissingGround(NAMES), AHEAD[0] + 0.05
     missing.stopped(0, AHEAD[0], goal, 0j)
@@ -857,7 +863,7 @@ def test_a_foot_that_rises_along_an_obstacle_does_not_stand_on_it(phase, tries):
 
 
 @pytest.mark.parametrize(
-    ("speed", "on", "tries"), [(0.0, 0.045, 1), (-0.1, 0.045, 0), (0.0, 0.005, 1), (-0.1, 0.005, 0)]
+    ("speed", "on", "tries"), [(0.0, 0.045, 1), (-0.1, 0.045, 0), (0.0, 0.005, 1), (-0.1, 0.005, 0), (0.0, -0.045, 0)]
 )
 def test_a_foot_that_is_high_over_an_obstacle_and_does_not_go_down_touches_its_side(speed, on, tries):
     # Contact at the end of its way, or far past its collision, is the ground only of a foot that goes down.

@@ -36,8 +36,8 @@ _LAG, _LEAST_LAG, _LONGEST_LAG, _RATE, _MEAN_RATE, _SLOW = 0.005, -0.01, 0.1, 2.
 # Torques left over in free swing, over the load, below which servos are familiar and above which they are not; how
 # much faster these are learnt.
 _FAMILIAR, _STRANGE, _FASTER = 0.1, 0.15, 3.0
-# Load of all legs above which contacts are known, over weight times length of femur and tibia; how long it may be half
-# of what it was [s]: something bears the robot, so what was learnt is wrong.
+# Load of all legs above which contacts are known, over weight times length of femur and tibia; how long it may be less
+# than half of the learnt one [s]: then something else bears the robot, or what was learnt is wrong.
 _LEAST_LOAD, _UNBORNE = 0.1, 0.5
 # Steps of integration a tick, and for how long expected angles are kept [s].
 _STEPS, _KEPT = 4, 0.25
@@ -50,9 +50,11 @@ class JointContacts:
     speed, dead band, inertia of rotor and links, and a lag that is learnt. What is left over, measured less expected
     angle, times the stiffness is the torque of the ground and of the leg's weight. It is compared with that of the same
     leg in free swing, which takes care of offsets of horns, and with the load of the standing legs. The tibia tells
-    less: its torque changes sign with the direction of the force. Until free swings have been seen to follow what is
-    expected, and legs to bear the robot, which ideal or emulated servos do not tell, nothing is known; nor once legs do
-    not bear it any more, for longer than steps take: what was learnt is learnt anew, while the walk goes on without.
+    less: its torque changes sign with the direction of the force.
+
+    Nothing is known until free swings have followed what is expected and the legs have borne the robot; ideal and
+    emulated servos never show that they do. Where the legs bear less than half of the load for longer than steps take,
+    what was learnt is forgotten and learnt anew, and the walk goes on without contacts.
 
     Parameters
     ----------
@@ -142,7 +144,7 @@ class JointContacts:
         return touching
 
     def _forget(self) -> None:
-        """Begin to learn: loads, what is left over in free swing, and its mean [N m]."""
+        """Forget load, torques left over in free swing and their mean [N m]; the lag is kept."""
         self._load, self._left, self._mean = 0.0, self._least, [0.0] * len(self._stiffness)
         self._familiar, self._unborne = False, 0.0
 

@@ -44,6 +44,7 @@ _LEAVING = 0.1
 _GENTLE, _NEAR = 0.02, 0.004
 # A foot that goes down faster has not come to the end of its reach, which sinks with the body [m/s].
 _FALLS = 0.1
+# How far a foot whose joint angles are not measured is off its command [m].
 _AS_COMMANDED = (0.0, 0.0, 0.0)
 
 

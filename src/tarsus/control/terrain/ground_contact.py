@@ -31,8 +31,8 @@ _ROUNDING = 1e-9
 _LIFTED = 0.01
 # After a collision: how much higher the foot rises [m], in which time [s], and how far it is drawn back [m].
 _HIGHER, _RISING, _DRAWN_BACK = 0.04, 0.12, 0.008
-# Of a foot that collides again: how far it is from its foothold at least, and past its collision at most, where it does
-# not touch the obstacle's top [m]; the speed with which it is drawn back [m/s].
+# A foot that goes down and touches something again, closer to its foothold than the first or farther past its collision
+# than the second, has met the ground [m]; the speed with which a foot is drawn back [m/s].
 _SHORT, _PAST, _DRAWS_BACK = 0.02, 0.03, 1.0
 # A foot that is deeper, on even ground, bears no load that is not felt, whatever its shin rests on [m]; nor does one on
 # rough ground that is this deep, over the body height.
@@ -69,8 +69,8 @@ def met_ground(
     for leg, (down, phase) in enumerate(zip(state.down.tolist(), state.swing_phase.tolist(), strict=True)):
         foot, meets = state.felt[leg], contacts.estimator.reads(leg) and contacts.lifted[leg]
         if down or phase <= _CLEAR:
-            rises = foot.top > float(state.ground_height[leg]) or foot.slide
-            if (contacts.feels(leg) or leg in stopped) and missing.tries(leg, places[leg]) and not rises:
+            under_way = foot.top > float(state.ground_height[leg]) or foot.slide
+            if (contacts.feels(leg) or leg in stopped) and missing.tries(leg, places[leg]) and not under_way:
                 state = _trying_again(state, leg, missing, reach, state, lag(leg))
             continue
         leaves = missing.obstacles.leaves(state.in_heading(complex(state.foothold[leg])) - places[leg])
@@ -154,6 +154,9 @@ def _collides_again(state: GaitState, leg: int, *, side: bool, stopped: bool, sc
     start, foot = state.felt[leg].drawn_back, complex(state.foot[leg])
     if start is None or state.swing_phase[leg] <= state.felt[leg].top_phase:
         return False
+    # A foot that steps in place meets no obstacle on its way.
+    if abs(state.foothold[leg] - start) < scale * _SHORT:
+        return False
     # A foot that does not go down meets no ground.
     falls = state.felt[leg].speed < 0.0
     short = abs(state.foothold[leg] - foot) < scale * _SHORT
@@ -190,7 +193,8 @@ def _trying_again(
     """Return the state with a foot that is stopped again: it is drawn back, and tries again while the walk stands."""
     height, turn = float(state.ground_height[leg]), cmath.exp(1j * state.yaw)
     foot, goal = (state.in_heading(complex(places[leg])) for places in (state.foot, state.foothold))
-    back = missing.stopped(leg, foot + lag / turn, goal, complex(reach.bows[leg]))
+    foot += lag / turn
+    back = missing.stopped(leg, foot, goal, complex(reach.bows[leg]))
     place = missing.places[leg]
     highest = state.elevation + reach.highest_on_way(leg, place, missing.obstacles.ends(leg, place))
     top = min(height + reach.scale * _HIGHER, max(highest, height))

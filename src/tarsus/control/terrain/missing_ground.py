@@ -85,7 +85,7 @@ class MissingGround:
         self.obstacles, self.places, self.stranded = Obstacles(scale), dict[int, complex](), list[int]()
         self.pace, self.back, self.tips, self.edge, self.refuses = 1.0, 0j, 0j, 0.0, False
         self._names, self._scale, self._tries, self._cause = names, scale, [0] * len(names), ("", "")
-        # Whether each foot that has stepped back has reached a little below the others only: it is over no hole.
+        # Whether each foot was only a little below the others as it last stepped back: it is over no hole.
         self._shallow = [False] * len(names)
         self.lost: int | None = None
         # How long feet that hang have been held up by their legs [s].
@@ -195,9 +195,10 @@ class MissingGround:
     def _back_off(self, footing: Footing, dt: float) -> None:
         """Decide with which velocity the body backs off, and whether the walk goes on where it has waited."""
         feet, stands, centre, _ = footing
-        # A foot that does not reach the ground is over no hole, unless the robot tips.
-        near = all(self.gives_up(leg) and self._shallow[leg] and not self.tips for leg in self.places)
-        self._edge.since = (self._edge.since + dt) * near
+        # The time runs on while all feet without ground have been only a little below the others: they are over no
+        # hole, unless the robot tips.
+        only_shallow = all(self.gives_up(leg) and self._shallow[leg] and not self.tips for leg in self.places)
+        self._edge.since = (self._edge.since + dt) * only_shallow
         if self.refuses and not self._stops and self._again < _AGAIN and self._edge.since > _WAITS:
             self._again += 1
             self._edge.leave(self.obstacles.found)

@@ -11,6 +11,10 @@ __all__ = ["Obstacles"]
 _STOPS, _SIDES, _BESIDE, _BEFORE = 3, 2, 0.06, 0.04
 
 
+# A way below which it has no direction [m].
+_NO_WAY = 1e-9
+
+
 class Obstacles:
     """Decides where feet try next that are stopped on their way.
 
@@ -61,7 +65,8 @@ class Obstacles:
             Where it is drawn back to; where it goes from there, the same place if it was stopped too often [m].
         """
         stops, start, goal = self._stops.get(leg, (1, foot, goal))
-        self._stops[leg], way = (stops + 1, start, goal), (goal - start) / abs(goal - start)
+        self._stops[leg], way = (stops + 1, start, goal), goal - start
+        way /= max(abs(way), _NO_WAY)
         start -= self._scale * _BEFORE * way
         self._goals.pop(leg, None)
         if stops >= _STOPS + _SIDES:

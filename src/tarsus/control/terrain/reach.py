@@ -1,4 +1,4 @@
-"""How low and how high each foot may stand and swing: the heights at which the leg reaches the whole of its stroke."""
+"""How low and how high each foot may stand on its stroke, and how high it may swing, straight on or swung out."""
 
 from __future__ import annotations
 
@@ -59,7 +59,7 @@ class Reach:
         self._tops = self._bowed = [(0.0,) * len(STROKE_PLACES)] * robot.legs
         self.bows = self.strokes
         self.scale = min(float((robot.femur + robot.tibia).mean()) / _USUAL_LEG, 1.0)
-        self._robot = robot
+        self._robot, self._mounts = robot, robot.mount_position[:, 0] + 1j * robot.mount_position[:, 1]
         self._key: tuple[float, ...] = ()
 
     def update(self, tick: TickState, rest: Complex[np.ndarray, "legs"], stance_time: float) -> None:
@@ -80,9 +80,11 @@ class Reach:
         if key != self._key or rest is not self.rest:
             self._key, self.rest, strokes = key, rest, complex(x, y) + 1j * arc / _TURNING_ARM * rest
             self.stroke, self.strokes = float(np.abs(strokes).max()) / 2, strokes
-            # Outwards, from the line along the stroke through the body's middle; nowhere from a foot on that line.
+            # Away from the leg's coxa, across the stroke; nowhere where the coxa is in line with that.
             along = strokes / np.maximum(np.abs(strokes), _NO_STROKE)
-            self.bows = self.scale * _BOW * 1j * along * np.sign((rest * along.conj()).imag.round(_DECIMALS))
+            aside = np.sign(((rest - self._mounts) * along.conj()).imag.round(_DECIMALS))
+            # Of a robot that stops, the body keeps its height.
+            self.bows = np.where(strokes == 0, self.bows, self.scale * _BOW * 1j * along * aside)
             (lowest, lowest_beside), (highest, highest_beside) = reachable_heights(
                 self._robot, posture, np.array([rest, rest + self.bows]), strokes
             )
@@ -114,10 +116,8 @@ class Reach:
     def _highest_at(self, leg: int, place: complex, *, bowed: bool) -> float:
         """Return the greatest height of a foot at a place, by how far along and beside its stroke that is [m]."""
         stroke, bow = complex(self.strokes[leg]), complex(self.bows[leg])
-        if not stroke:
-            return self.highest[leg]
         off = place - complex(self.rest[leg])
-        ahead = (off * stroke.conjugate()).real / abs(stroke) ** 2
+        ahead = (off * stroke.conjugate()).real / abs(stroke) ** 2 if stroke else 0.0
         beside = 1.0 if bowed or not bow else min(max((off * bow.conjugate()).real / abs(bow) ** 2, 0.0), 1.0)
         straight, out = (_along(tops[leg], ahead) for tops in (self._tops, self._bowed))
         return straight + beside * (out - straight)
@@ -131,7 +131,8 @@ class Reach:
             The swing height [m]; whether any foot hangs, for which the body has to be lowered.
         """
         room = (_HANGING_CLEARANCE if hangs else _CLEARANCE) * swing_height
-        return [min(heights) - room for heights in self._bowed]
+        # A foot that stands is not swung out.
+        return [min(min(out) - room, highest) for out, highest in zip(self._bowed, self.highest, strict=True)]
 
     def hangs(self, leg: int, height: float) -> bool:
         """Return whether a leg with its foot at a height in the heading frame [m] is at the end of its reach."""

@@ -28,7 +28,7 @@ _ADMITTANCE_BANDWIDTH = 20.0
 _SHIFT_BANDWIDTH = 5.0
 # A foot that feels the ground is at its rest foothold within the first distance, and stays there within the second [m].
 _FELT_TOLERANCES = (0.015, 0.03)
-# Part of its way on which a foot that feels the ground swings out.
+# Part of its way up to which a foot that feels the ground swings out.
 _BOWS = 0.5
 # A speed below this is 0 [m/s].
 _NO_SPEED = 3e-7
@@ -163,7 +163,7 @@ def _swing(
             target = predictor.foothold(leg, until, until + stance / 2) if final is None else complex(final[leg])
             targets[leg] = target
         if state.felt and drawn_back is None and phase < _BOWS * travel:
-            # Halfway to a place, a foot is half as far aside as that.
+            # A path is halfway at half of its time: there the foot is aside by its bow.
             target += 2 * state.felt[leg].bow
         left, path = end - phase, (target, 0j, 0j)
         if since >= swing - PHASE_TOLERANCE:

@@ -47,12 +47,12 @@ _SEARCH_TIME = 0.1
 _NEARS, _PRESSED, _PRESSED_DEEP = 0.007, 0.004, 0.4
 # Room over known ground on the way of a foot that goes down [m].
 _OVER = 0.015
-# How far past a collision a foot goes down again [m].
+# How far from where it was drawn back to a foot goes down again [m].
 _PAST = 0.05
 # Rounding of a height [m].
 _ROUNDING = 1e-9
 # Speeds of a foot that steps back, up and back [m/s].
-_RISING, _BACK = 0.45, 0.6
+_RISING, _BACK = 0.3, 0.4
 # Greatest changes of speed: of feet in the air, of the body, of feet on the ground, and of their slide [m/s^2].
 _FOOT_ACCELERATION, _BODY_ACCELERATION, _STANDING_ACCELERATION, _STOPPING = 6.0, 1.0, 15.0, 12.0
 

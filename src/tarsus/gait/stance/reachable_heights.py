@@ -43,6 +43,11 @@ def reachable_heights(
         Rest footholds in the heading frame [m].
     strokes : complex array, shape (legs,)
         Stroke of each foot about its rest foothold [m].
+
+    Returns
+    -------
+    lowest, highest : array, shape (..., 3, legs)
+        Heights at the places of `STROKE_PLACES` [m].
     """
     g = robot.geometry
     levels = _TRIED * float(np.max(g.femur + g.tibia))

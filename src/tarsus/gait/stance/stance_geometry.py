@@ -41,7 +41,7 @@ class StanceGeometry(NamedTuple):
 
     Attributes
     ----------
-    rest : complex array, shape (legs,)
+    rest : complex array, shape (..., legs)
         Rest footholds [m].
     rotation : array, shape (3, 3)
         Rotation of the body in the heading frame.
