@@ -875,6 +875,22 @@ def test_a_foot_that_is_high_over_an_obstacle_and_does_not_go_down_touches_its_s
     assert list(missing.places) == [0] * tries
 
 
+def test_a_foot_that_is_stopped_while_it_tries_again_is_drawn_back_once_more():
+    state, body, timing = touching_in_swing(0.0, 0.0, FeltFoot())
+    state, missing = state._replace(down=np.full(6, fill_value=True)), MissingGround(NAMES)
+    foot, rising = state.in_heading(complex(state.foot[0])), FeltFoot(top=0.05)
+    missing.stopped(0, foot, foot + 0.1, 0j)
+    for under_way in (True, False):
+        feet = [rising if under_way else FeltFoot(), *state.felt[1:]]
+        after, landed = met_ground(
+            state._replace(felt=feet), body, missing, stopped=[0], lag=as_commanded, timing=timing, pace=0.0
+        )
+        assert not landed
+        # Slides back, and rises; one that rises already goes on.
+        assert (after.felt[0].slide != 0j) == (not under_way)
+        assert after.felt[0].top == 0.05 if under_way else after.felt[0].top >= 0.0
+
+
 def test_a_foot_that_collides_is_drawn_back_from_where_it_is_measured():
     state, body, timing = touching_in_swing(0.3, 0.02, FeltFoot(top=0.03, top_phase=0.42))
     state = state._replace(foothold=state.foothold + 0.05)
