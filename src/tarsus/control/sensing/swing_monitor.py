@@ -54,6 +54,8 @@ class SwingMonitor:
         while since[-1] - commands[-1][0] > longest:
             since.pop()
             commands.pop()
+        if valid.joint_angles is None:
+            return stopped
         lag, usual, oldest = self._lag, self._usual, self._lag + window + _ROUNDING
         held = [
             (min(start, oldest) - max(start - time, lag), angles)
@@ -61,7 +63,7 @@ class SwingMonitor:
             if lag < start and start - time <= oldest
         ]
         newer, older = held[0][1], held[-1][1]
-        for leg, angles in enumerate(valid.joint_angles or ()):
+        for leg, angles in enumerate(valid.joint_angles):
             if angles is None or down[leg]:
                 continue
             angle, speed = angles[0], (newer[leg] - older[leg]) / window
