@@ -147,14 +147,14 @@ def test_front_legs_reach_higher_ahead_and_rear_legs_behind():
     controller, stroke = WalkController(STRIDER), 0.06
     state, reach = controller._tick.gait, Reach(STRIDER)
     rest = state.foot
-    assert reach.highest_on_way(0, rest[0], rest[0]) == 0.0
+    assert reach.highest_on_way(0, rest[0], rest[0])[0] == 0.0
     reach.update(TickState(state, np.array([2 * stroke, 0.0, 0.0])), rest, 0.5)
-    tops = [[reach.highest_on_way(leg, rest[leg] + x, rest[leg] + x) for x in (-0.03, 0.0, 0.03)] for leg in (0, 2)]
+    tops = [[reach.highest_on_way(leg, rest[leg] + x, rest[leg] + x)[0] for x in (-0.03, 0.0, 0.03)] for leg in (0, 2)]
     assert tops[0] == sorted(tops[0])
     assert tops[1] == sorted(tops[1], reverse=True)
     assert (tops[0][0], tops[1][2]) == (reach.highest[0], reach.highest[2])
     # A way is as high as the lower of its ends.
-    assert reach.highest_on_way(0, rest[0] + 0.03, rest[0]) == tops[0][1]
+    assert reach.highest_on_way(0, rest[0] + 0.03, rest[0])[0] == tops[0][1]
 
 
 def test_legs_reach_higher_beside_their_strokes_away_from_the_body():
@@ -165,10 +165,10 @@ def test_legs_reach_higher_beside_their_strokes_away_from_the_body():
     for leg, place in enumerate(rest.tolist()):
         bow = complex(reach.bows[leg])
         assert bow == pytest.approx(0.03j * np.sign(place.imag))
-        straight, half, out = (reach.highest_on_way(leg, at, at) for at in (place, place + bow / 2, place + bow))
-        assert straight < half < out == reach.highest_on_way(leg, place, place, bowed=True)
+        straight, half, out = (reach.highest_on_way(leg, at, at)[0] for at in (place, place + bow / 2, place + bow))
+        assert straight < half < out == reach.highest_on_way(leg, place, place)[1]
         # Towards the body it is no lower than known along the stroke.
-        assert reach.highest_on_way(leg, place - bow, place - bow) == straight
+        assert reach.highest_on_way(leg, place - bow, place - bow)[0] == straight
     # A robot that stops keeps them, and with them the height of its body.
     stands = reach.highest_stand(0.05)
     reach.update(TickState(state, np.zeros(3)), rest, 0.5)
@@ -181,7 +181,8 @@ def test_legs_reach_higher_beside_their_strokes_away_from_the_body():
     # Sideways, the strokes of the middle legs lead through their coxae, and those legs swing straight.
     reach.update(TickState(state, np.array([0.0, 0.12, 0.0])), rest, 0.5)
     assert reach.bows[[1, 4]].tolist() == [0j, 0j]
-    assert reach.highest_on_way(1, rest[1], rest[1], bowed=True) == reach.highest_on_way(1, rest[1], rest[1])
+    straight, bowed = reach.highest_on_way(1, rest[1], rest[1])
+    assert straight == bowed
 
 
 @pytest.mark.parametrize(("swing_height", "share"), [(0.02, 0.0), (0.075, 0.5), (0.2, 1.0)])
@@ -202,7 +203,7 @@ def test_places_out_of_reach_on_level_ground_do_not_tell_how_low_a_leg_reaches()
     # Ends of a stroke of half a metre are in reach at no height, its middle is.
     reach.update(TickState(state, np.array([1.0, 0.0, 0.0])), rest, 0.5)
     assert (reach.lowest, reach.highest) == (lowest, highest)
-    assert reach.highest_on_way(0, rest[0], rest[0] + 0.25) == highest[0] > 0.0
+    assert reach.highest_on_way(0, rest[0], rest[0] + 0.25)[0] == highest[0] > 0.0
     # A leg whose foothold is out of reach keeps what is known of it, as 0 would command the body down at once.
     reach.update(still, np.array([rest[0] + 0.5, *rest[1:]]), 0.5)
     assert (reach.lowest, reach.highest) == (lowest, highest)

@@ -152,7 +152,9 @@ class LegOdometry:
         off = [(x - wanted_x, y - wanted_y, z - wanted_z) for (x, y, z), (wanted_x, wanted_y, wanted_z) in feet]
         return {leg: off[leg] for leg in legs if measured[leg] is not None}
 
-    def lag(self, valid: ValidReadings, angles: Float[np.ndarray, "legs 3"], yaw: float, leg: int) -> complex:
+    def tracking_error(
+        self, valid: ValidReadings, angles: Float[np.ndarray, "legs 3"], yaw: float, leg: int
+    ) -> complex:
         """Return how far a foot is from where it is commanded, horizontally in G; 0 where that is not measured [m].
 
         Parameters

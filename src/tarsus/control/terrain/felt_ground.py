@@ -138,8 +138,10 @@ class FeltGround:
         if self.missing.stranded and all(down):
             state = timing.with_first_lift(state, self.missing.stranded[0])
         pace = self.support.pace
-        lag = partial(self.body.odometry.lag, valid, angles, state.yaw + float(state.moved_posture[5]))
-        state, landed = met_ground(state, self.body, self.missing, stopped=stopped, lag=lag, timing=timing, pace=pace)
+        error = partial(self.body.odometry.tracking_error, valid, angles, state.yaw + float(state.moved_posture[5]))
+        state, landed = met_ground(
+            state, self.body, self.missing, stopped=stopped, error=error, timing=timing, pace=pace
+        )
         waits = self.missing.refuses and self.support.halts
         if self.missing.tips or self.condition.in_air or waits:
             state, swung = put_down(state, timing=timing, pace=pace)
@@ -267,12 +269,12 @@ class FeltGround:
         goal = place if down else state.in_heading(complex(state.foothold[leg]))
         reach, rests = self.body.reach, self._rests and self.support.held
         lowest = max(reach.lowest[leg], self.ground.at(goal) - _NEAR) if rests else reach.lowest[leg]
-        straight, bowed = (reach.highest_on_way(leg, place, goal, bowed=bowed) for bowed in (False, True))
+        straight, bowed = reach.highest_on_way(leg, place, goal)
         clears, back = not self._loads.estimated, self.missing.places.get(leg)
         room = (lowest if searches else None, straight)
         found = self.ground.under(place, goal, state.elevation, room, clears=clears)
-        found = found._replace(bow=heading * reach.bows[leg], bowed=state.elevation + bowed)
-        return found if back is None else found._replace(place=state.origin + back * heading)
+        back = None if back is None else state.origin + back * heading
+        return found._replace(bow=heading * reach.bows[leg], bowed=state.elevation + bowed, place=back)
 
     def _decide_on_support(self, footing: Footing, due: list[bool] | None, dt: float, swing_time: float) -> None:
         """Decide whether feet may lift off, and at which pace the walk goes on; None is due while the robot stands."""

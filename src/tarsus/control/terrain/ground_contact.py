@@ -47,7 +47,7 @@ def met_ground(
     missing: MissingGround,
     *,
     stopped: list[int],
-    lag: Callable[[int], complex],
+    error: Callable[[int], complex],
     timing: StepTiming,
     pace: float,
 ) -> tuple[GaitState, list[int]]:
@@ -59,7 +59,7 @@ def met_ground(
         The gait state; contacts, expected ground and reach. Its roughness takes note of footholds and collisions.
     missing, stopped : MissingGround, list of int
         Decides where feet that are stopped again try next; legs that are stopped on their way.
-    lag : callable
+    error : callable
         Returns how far the foot of a leg is from where it is commanded, in G [m].
     timing, pace : StepTiming, float
         The gait and its frequency; rate of the steps, 0 to 1.
@@ -71,13 +71,13 @@ def met_ground(
         if down or phase <= _CLEAR:
             under_way = foot.top > float(state.ground_height[leg]) or foot.slide
             if (contacts.feels(leg) or leg in stopped) and missing.tries(leg, places[leg]) and not under_way:
-                state = _trying_again(state, leg, missing, reach, state, lag(leg))
+                state = _trying_again(state, leg, missing, reach, state, error(leg))
             continue
         leaves = missing.obstacles.leaves(state.in_heading(complex(state.foothold[leg])) - places[leg])
         if not leaves and _collides_again(
             state, leg, side=contacts.feels(leg) and contacts.lifted[leg], stopped=leg in stopped, scale=reach.scale
         ):
-            state = _trying_again(state, leg, missing, reach, _landed(state, leg, timing, pace), lag(leg))
+            state = _trying_again(state, leg, missing, reach, _landed(state, leg, timing, pace), error(leg))
             landed.append(leg)
         elif phase > _LANDING or (pace < HALTING and _stands_below(state, leg, contacts, scale=reach.scale)):
             # Contact that has not ceased since lift-off tells nothing: the foot lands where ground is expected. Nor
@@ -98,7 +98,7 @@ def met_ground(
                 landed.append(leg)
         elif (meets or leg in stopped) and not leaves and _collides(state, leg, contacts, scale=reach.scale):
             body.roughness.collided()
-            state = _rising_again(state, leg, _highest(state, leg, reach), timing, lag(leg), scale=reach.scale)
+            state = _rising_again(state, leg, _highest(state, leg, reach), timing, error(leg), scale=reach.scale)
     return state, landed
 
 
@@ -165,7 +165,7 @@ def _collides_again(state: GaitState, leg: int, *, side: bool, stopped: bool, sc
 
 
 def _rising_again(
-    state: GaitState, leg: int, highest: float, timing: StepTiming, lag: complex, *, scale: float
+    state: GaitState, leg: int, highest: float, timing: StepTiming, error: complex, *, scale: float
 ) -> GaitState:
     """Return the state with a foot that lags behind its command: it draws back from an obstacle and rises higher."""
     height, foot = float(state.ground_height[leg]), complex(state.foot[leg])
@@ -176,7 +176,7 @@ def _rising_again(
         leg,
         top=min((height if math.isnan(top) else max(top, height)) + scale * _HIGHER, max(highest, height)),
         top_phase=min(float(state.swing_phase[leg]) + _RISING / timing.swing_time, 1.0),
-        drawn_back=foot + lag - scale * _DRAWN_BACK * way / max(abs(way), 1e-9),
+        drawn_back=foot + error - scale * _DRAWN_BACK * way / max(abs(way), 1e-9),
     )
     return state._replace(felt=felt)
 
@@ -184,19 +184,19 @@ def _rising_again(
 def _highest(state: GaitState, leg: int, reach: Reach) -> float:
     """Return the greatest height in G of a foot on its way to its foothold [m]."""
     start, end = (state.in_heading(complex(place)) for place in (state.foot[leg], state.foothold[leg]))
-    return state.elevation + reach.highest_on_way(leg, start, end)
+    return state.elevation + reach.highest_on_way(leg, start, end)[0]
 
 
 def _trying_again(
-    state: GaitState, leg: int, missing: MissingGround, reach: Reach, after: GaitState, lag: complex
+    state: GaitState, leg: int, missing: MissingGround, reach: Reach, after: GaitState, error: complex
 ) -> GaitState:
     """Return the state with a foot that is stopped again: it is drawn back, and tries again while the walk stands."""
     height, turn = float(state.ground_height[leg]), cmath.exp(1j * state.yaw)
     foot, goal = (state.in_heading(complex(places[leg])) for places in (state.foot, state.foothold))
-    foot += lag / turn
+    foot += error / turn
     back = missing.stopped(leg, foot, goal, complex(reach.bows[leg]))
     place = missing.places[leg]
-    highest = state.elevation + reach.highest_on_way(leg, place, missing.obstacles.ends(leg, place))
+    highest = state.elevation + reach.highest_on_way(leg, place, missing.obstacles.ends(leg, place))[0]
     top = min(height + reach.scale * _HIGHER, max(highest, height))
     slide = reach.scale * _DRAWS_BACK * turn * back / max(abs(back), 1e-9)
     return after._replace(felt=_with(after.felt, leg, speed=0.0, acceleration=0.0, top=top, slide=slide))

@@ -99,8 +99,10 @@ class Reach:
             bowed = np.where(lowest_beside < highest_beside, np.maximum(highest_beside, tops), tops)
             self._tops, self._bowed = ([tuple(leg) for leg in heights.T.tolist()] for heights in (tops, bowed))
 
-    def highest_on_way(self, leg: int, start: complex, end: complex, *, bowed: bool = False) -> float:
-        """Return the greatest height of a foot on a way: front legs reach higher ahead, rear legs behind [m].
+    def highest_on_way(self, leg: int, start: complex, end: complex) -> tuple[float, float]:
+        """Return the greatest heights of a foot on a way, straight on and swung out [m].
+
+        Front legs reach higher ahead, rear legs behind.
 
         Parameters
         ----------
@@ -108,19 +110,18 @@ class Reach:
             The leg.
         start, end : complex
             Where the way begins and ends, in the heading frame [m].
-        bowed : bool
-            Whether the foot swings out on the way.
         """
-        return min(self._highest_at(leg, start, bowed=bowed), self._highest_at(leg, end, bowed=bowed))
+        (straight, bowed), (straight_end, bowed_end) = self._highest_at(leg, start), self._highest_at(leg, end)
+        return min(straight, straight_end), min(bowed, bowed_end)
 
-    def _highest_at(self, leg: int, place: complex, *, bowed: bool) -> float:
-        """Return the greatest height of a foot at a place, by how far along and beside its stroke that is [m]."""
+    def _highest_at(self, leg: int, place: complex) -> tuple[float, float]:
+        """Return the same at a place, by how far along and beside its stroke that is [m]."""
         stroke, bow = complex(self.strokes[leg]), complex(self.bows[leg])
         off = place - complex(self.rest[leg])
         ahead = (off * stroke.conjugate()).real / abs(stroke) ** 2 if stroke else 0.0
-        beside = 1.0 if bowed or not bow else min(max((off * bow.conjugate()).real / abs(bow) ** 2, 0.0), 1.0)
-        straight, out = (_along(tops[leg], ahead) for tops in (self._tops, self._bowed))
-        return straight + beside * (out - straight)
+        beside = min(max((off * bow.conjugate()).real / abs(bow) ** 2, 0.0), 1.0) if bow else 0.0
+        straight, bowed = (_along(tops[leg], ahead) for tops in (self._tops, self._bowed))
+        return straight + beside * (bowed - straight), bowed
 
     def highest_stand(self, swing_height: float, *, hangs: bool = False) -> list[float]:
         """Return the greatest height of each foot on the ground that leaves room for its swing [m].
