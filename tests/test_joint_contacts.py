@@ -16,18 +16,19 @@ STRIDER = tarsus.load_robot("strider")
 DT = 0.01
 
 
-def test_a_robot_without_sensors_in_its_feet_feels_the_ground_by_its_joints():
+@pytest.mark.parametrize("dt", [DT, 0.02])
+def test_a_robot_without_sensors_in_its_feet_feels_the_ground_by_its_joints(dt):
     sensors = dataclasses.replace(SensorSuite.named("smart"), attitude=SensorSuite.named("hobby").attitude)
     # On these blocks the front left foot is caught by one, and rises over it.
     ground = terrain.Blocks(rise=0.04, clear=0.35, seed=2)
     plant, controller = SimulatedPlant(STRIDER, terrain=ground, sensors=sensors), tarsus.RobotController(STRIDER)
     plant.start(controller.output)
     right = []
-    for tick in range(450):
-        readings = plant.step(controller.output, DT)
+    for tick in range(round(4.5 / dt)):
+        readings = plant.step(controller.output, dt)
         assert readings.contacts is None
-        controller.step((0.14, 0.0, 0.0), DT, readings)
-        if tick > 120:
+        controller.step((0.14, 0.0, 0.0), dt, readings)
+        if tick * dt > 1.2:
             contacts = controller._activity.controller._walk.ground.contacts
             assert all(contacts.estimator.known)
             right.append(np.array(contacts.estimator.touching) == (plant.state.foot_forces[:, 2] > 0.5))

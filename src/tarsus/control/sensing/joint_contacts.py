@@ -39,8 +39,8 @@ _FAMILIAR, _STRANGE, _FASTER = 0.1, 0.15, 3.0
 # Load of all legs above which contacts are known, over weight times length of femur and tibia; how long it may be less
 # than half of the learnt one [s]: then something else bears the robot, or what was learnt is wrong.
 _LEAST_LOAD, _UNBORNE = 0.1, 0.5
-# Steps of integration a tick, and for how long expected angles are kept [s].
-_STEPS, _KEPT = 4, 0.25
+# Step of the integration, and for how long expected angles are kept [s].
+_STEP, _KEPT = 0.0025, 0.25
 
 
 class JointContacts:
@@ -85,8 +85,8 @@ class JointContacts:
         stiffness: Float[np.ndarray, "legs"] = springs.stiffness[:, 1]
         self._rates, self._stiffness = (stiffness / inertia, springs.damping[:, 1] / inertia), stiffness.tolist()
         self._columns = springs.stall_torque[:, 1] / stiffness, springs.dead_band[:, 1], stiffness
-        # Of each femur: what a tick needs; angle, speed and target; expected angles and torques.
-        self._tick, self._servos, self._state = 0.0, list[tuple[float, ...]](), list[tuple[float, float, float]]()
+        # Of each femur: what a step needs; angle, speed and target; expected angles and torques after each step.
+        self._step, self._servos, self._state = 0.0, list[tuple[float, ...]](), list[tuple[float, float, float]]()
         self._expected = deque[list[tuple[float, float]]]()
         longest = float((lengths + np.asarray(robot.geometry.tibia)).max())
         self._least = _LEAST_LOAD * known_weight(robot) * longest
@@ -110,7 +110,8 @@ class JointContacts:
             The gait state; time since the last tick [s].
         """
         self._follow(angles[:, 1].tolist(), dt)
-        late, legs = (self.lag + valid.contact_age) / dt, [leg for leg in valid.joint_angles or () if leg is not None]
+        legs = [leg for leg in valid.joint_angles or () if leg is not None]
+        late = (self.lag + valid.contact_age) / self._step
         recent = max(int(late), 0) + 1
         if recent >= len(self._expected) or len(legs) < len(self._stiffness):
             return None
@@ -124,7 +125,7 @@ class JointContacts:
         stands, phases = state.down.tolist(), state.swing_phase.tolist()
         free = [leg for leg, on in enumerate(stands) if not on and _CLEAR < phases[leg] < _DOWNWARD]
         if free:
-            self._learn(free, off, [(newer[leg] - older[leg]) / dt for leg in free], dt)
+            self._learn(free, off, [(newer[leg] - older[leg]) / self._step for leg in free], dt)
         load = sum(torque for torque, on in zip(off, stands, strict=True) if on)
         borne = load > self._load / 2
         self._load += borne * _MEAN_RATE * dt * (load - self._load)
@@ -164,21 +165,24 @@ class JointContacts:
 
     def _follow(self, commanded: list[float], dt: float) -> None:
         """Take note of the angles after a tick in which free legs follow their commands."""
-        step, before = dt / _STEPS, self._state or [(command, 0.0, command) for command in commanded]
-        if dt != self._tick:
+        steps = max(round(dt / _STEP), 1)
+        step = dt / steps
+        if step != self._step:
             spring, damper = self._rates
             kept = 1 / (1 + step * damper + step**2 * spring)
             columns = (kept, step * spring * kept, *self._columns)
-            self._tick, self._servos = dt, list(zip(*(column.tolist() for column in columns), strict=True))
-        self._state, expected = [], list[tuple[float, float]]()
-        for command, state, servo in zip(commanded, before, self._servos, strict=True):
-            (angle, speed, target), (kept, gain, most, band, stiffness) = state, servo
-            target = min(max(target, command - band), command + band)
-            for _ in range(_STEPS):
+            self._step, self._servos = step, list(zip(*(column.tolist() for column in columns), strict=True))
+        self._state = self._state or [(command, 0.0, command) for command in commanded]
+        for _ in range(steps):
+            moved, expected = list[tuple[float, float, float]](), list[tuple[float, float]]()
+            for command, state, servo in zip(commanded, self._state, self._servos, strict=True):
+                (angle, speed, target), (kept, gain, most, band, stiffness) = state, servo
+                target = min(max(target, command - band), command + band)
                 speed = kept * speed + gain * min(max(target - angle, -most), most)
                 angle += step * speed
-            self._state.append((angle, speed, target))
-            expected.append((angle, stiffness * (target - angle)))
-        self._expected.append(expected)
-        while len(self._expected) * dt > _KEPT + dt / 2:
+                moved.append((angle, speed, target))
+                expected.append((angle, stiffness * (target - angle)))
+            self._state = moved
+            self._expected.append(expected)
+        while len(self._expected) * step > _KEPT + step / 2:
             self._expected.popleft()
