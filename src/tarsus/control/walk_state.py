@@ -21,7 +21,7 @@ class WalkState(StrEnum):
 
     STANDING: every foot at its rest foothold, no step under way. WALKING: the robot steps and follows a twist.
     STOPPING: no twist is left to follow; the feet step to their rest footholds. CHANGING_GAIT: the feet in the air
-    touch down and none lifts, until the new gait starts. SEARCHING: a foot searches for ground below its foothold.
+    touch down and none lifts, until the new gait starts. SEARCHING: the walk waits until its feet hold the robot.
     """
 
     STANDING = "standing"
@@ -45,7 +45,7 @@ def next_walk_state(
     at_rest : bool
         Whether all feet are down at their rest footholds and nothing moves.
     changes_gait, searches : bool, bool
-        Whether all feet touch down for another gait; whether a foot searches for ground.
+        Whether all feet touch down for another gait; whether the walk waits until its feet hold the robot.
     """
     if searches:
         return WalkState.SEARCHING

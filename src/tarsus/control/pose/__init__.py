@@ -1,1 +1,1 @@
-"""Body pose while walking: filtering, levelling, compliance of the feet."""
+"""Body pose while walking: filtering, levelling, heading, stance on slopes; compliant and rolling feet, deflection."""

@@ -36,12 +36,8 @@ class Admittance:
 
     Attributes
     ----------
-    mass : float
-        Virtual mass [kg].
-    damping : float
-        Virtual damping [N s/m].
-    stiffness : float
-        Virtual stiffness [N/m].
+    mass, damping, stiffness : float
+        Virtual mass [kg], damping [N s/m] and stiffness [N/m].
     travel : float
         Greatest offset [m]; force errors that would exceed it are limited.
 

@@ -86,6 +86,11 @@ class PostureFeedback:
         Share of the slope that the body follows as a level one has no room over it or its legs do not reach, 0 to 1.
     kept : float
         Share of a measured tilt that is turned back, 0 to 1.
+
+    Raises
+    ------
+    InputError
+        If `levelling` is another.
     """
 
     def __init__(self, levelling: Levelling | None, *, scale: float = 1.0) -> None:

@@ -1,1 +1,1 @@
-"""Validation of sensor readings, ground plane, foot forces."""
+"""What sensor readings tell: their validation, contacts and loads of the feet, lost way, stopped and failed joints."""

@@ -25,10 +25,8 @@ class BodyCondition:
         Time since a foot has touched the ground [s]; 0 where no contact is measured.
     tilt : float
         Angle of the body against gravity, as measured last [rad].
-    fallen : bool
-        Whether the robot lies on its side or its back.
-    carried : bool
-        Whether the robot is in the air, or is being put down.
+    fallen, carried : bool
+        Whether the robot lies on its side or its back; whether it is in the air, or is being put down.
     """
 
     def __init__(self) -> None:

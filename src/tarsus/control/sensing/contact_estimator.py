@@ -31,14 +31,11 @@ class ContactEstimator:
 
     Attributes
     ----------
-    touching : list of bool
-        Whether a foot bears load, more probably than not.
-    known : list of bool
-        Whether the contact is measured.
+    touching, known, certain : list of bool
+        Whether a foot bears load, more probably than not; whether its contact is measured; whether more readings like
+        the last ones change no estimate.
     error : float
         Estimated fraction of wrong readings.
-    certain : list of bool
-        Whether more readings of a foot like the last ones change no estimate.
     """
 
     def __init__(self, legs: int) -> None:

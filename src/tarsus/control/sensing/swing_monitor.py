@@ -43,7 +43,15 @@ class SwingMonitor:
         self._commanded = deque[tuple[float, list[float]]]()
 
     def step(self, commanded: list[float], valid: ValidReadings, dt: float, down: Sequence[bool]) -> list[int]:
-        """Return the legs in the air that are stopped, by the angles of their coxa joints that were commanded last."""
+        """Return the legs in the air whose coxa joints are stopped.
+
+        Parameters
+        ----------
+        commanded : list of float
+            Angles of the coxa joints that were commanded last [rad].
+        valid, dt, down : ValidReadings, float, sequence of bool
+            The readings; time since the last tick [s]; which feet should stand.
+        """
         commands = self._commanded
         stopped: list[int] = []
         commands.appendleft((dt, commanded))

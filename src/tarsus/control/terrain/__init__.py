@@ -1,1 +1,1 @@
-"""Felt ground: contacts of the feet, their vertical motion, height and tilt of the body, support."""
+"""Ground that is felt or given: contacts in time, body motion, support, reach, roughness, slopes, obstacles, holes."""

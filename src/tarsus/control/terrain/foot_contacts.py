@@ -85,7 +85,7 @@ class FootContacts:
     standing : list of bool
         Whether each foot that should stand does, but for the shortest of interruptions.
     age : float
-        Age of the readings [s].
+        Time since the contacts, with what the joints lag more than usual [s].
     sunk : list of float
         By how much the body has sunk at each foot by its tilt since that lost its contact [m].
     """

@@ -44,13 +44,13 @@ _THERE = 0.004
 _FIRM, _MARGIN, _BACKS, _SPEED = 0.06, 0.03, 0.08, 0.15
 # A foot that finds no ground at less depth than this is over no hole: the leg does not reach there [m].
 _SHALLOW = 0.02
-# How often the walk tries other footholds at an edge to ground that is seen, not reached, when [s], and for how long it
+# How often the walk goes on with other footholds where there may be no hole, after which time [s], and for how long it
 # makes up for no lost time then [s].
 _AGAIN, _WAITS, _CAREFUL = 2, 1.0, 1.5
 
 
 class MissingGround:
-    """Decides where feet step that find no ground, how the body backs off, and which twist leads over the edge.
+    """Decides where feet step that find no ground or are stopped, how the body backs off, and which twist is refused.
 
     Parameters
     ----------
@@ -62,9 +62,9 @@ class MissingGround:
     obstacles : Obstacles
         Where feet try next that are stopped on their way.
     places : dict of int to complex
-        Where each foot that steps back is to stand, in the heading frame [m].
+        Where each foot is to stand that steps back, or tries to get past an obstacle, in the heading frame [m].
     refuses : bool
-        Whether the commanded twist leads over the edge: the robot stays where it is.
+        Whether the commanded twist leads over an edge or towards an obstacle: the robot stays where it is.
     pace : float
         Rate of the walk that feet without contact leave, 0 to 1.
     back : complex
@@ -230,7 +230,7 @@ class MissingGround:
             self._edge.way = way
         back = _BACK[min(self._tries[leg], len(_BACK)) - 1] * footholds.placement_radii[leg]
         self.places[leg] = complex(footholds.rest[leg]) - back * self._edge.way
-        # Ground that is seen and not reached from here may be reached with other footholds.
+        # Ground that is only a little lower, or rough, may be reached with other footholds.
         reached, shallow = f"no ground within {1e3 * depth:.0f} mm below the other feet", depth < self._scale * _SHALLOW
         self._shallow[leg] = shallow
         self._cause = self._names[leg], "the ground is lower than the leg reaches" if shallow else reached
@@ -248,7 +248,13 @@ class MissingGround:
         self.places.pop(leg, None)
 
     def stopped(self, leg: int, foot: complex, goal: complex, bow: complex) -> complex:
-        """Decide where a foot tries next that is stopped here on its way to a goal; return the way back [m]."""
+        """Decide where a foot tries next that is stopped; return the way on which it is drawn back [m].
+
+        Parameters
+        ----------
+        leg, foot, goal, bow : int, complex, complex, complex
+            As in `Obstacles.stopped`: the leg; places, and how far the foot may swing out, in the heading frame [m].
+        """
         start, self.places[leg] = self.obstacles.stopped(leg, foot, goal, bow)
         ends = not self.obstacles.tries(leg)
         self._cause = self._names[leg], "an obstacle stops the foot" + ends * " that is higher than the leg steps"
@@ -268,7 +274,7 @@ class MissingGround:
         return min((shift * self._edge.way.conjugate()).real, 0.0) * self._edge.way if self.refuses else 0j
 
     def limit(self, request: TwistRequest, grant: TwistGrant) -> TwistGrant:
-        """Return the grant, without a twist that leads over the edge; one that leads away is granted from then on."""
+        """Return the grant, without a twist that leads over an edge or towards an obstacle; another one ends that."""
         velocity = complex(*request.twist[:2])
         self._stops = not any(request.twist)
         self.refuses = leads_towards(velocity, self._edge.way) or (self._stops and self._over)

@@ -7,10 +7,8 @@ from collections.abc import Callable
 
 __all__ = ["Obstacles"]
 
-# How often a foot is stopped until it is put down beside its way, on how many sides, how far, or before that [m].
+# How often a foot is stopped until it goes beside its way, on how many sides, how far, and how far back before [m].
 _STOPS, _SIDES, _BESIDE, _BEFORE = 3, 2, 0.06, 0.04
-
-
 # A way below which it has no direction [m].
 _NO_WAY = 1e-9
 

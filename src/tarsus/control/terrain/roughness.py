@@ -37,10 +37,8 @@ class GroundAdaptation:
 
     Attributes
     ----------
-    swing_height : float
-        Greatest addition to the swing height [m].
-    body_height : float
-        Greatest addition to the body height [m].
+    swing_height, body_height : float
+        Greatest additions to the swing height and to the body height [m].
     drawn_in : float
         How far feet may be drawn in, so that legs reach higher and lower [m].
     cycle_time : float
@@ -91,7 +89,7 @@ class Roughness:
     adaptation : GroundAdaptation
         How far the walk may adapt.
     value : float
-        Distance of footholds from the plane of the feet that is expected [m].
+        Distance of footholds from the expected ground, less that of footholds on even ground [m].
     """
 
     def __init__(self, adaptation: GroundAdaptation, *, scale: float = 1.0) -> None:

@@ -157,10 +157,8 @@ class Support:
     ----------
     pace : float
         Rate of steps and twist, 0 to 1.
-    waits : bool
-        Whether feet that are due stay on the ground.
-    held : bool
-        Whether the feet that bear load hold the robot.
+    waits, held : bool
+        Whether feet that are due stay on the ground; whether the feet that bear load hold the robot.
     """
 
     def __init__(self) -> None:

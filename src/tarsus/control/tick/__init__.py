@@ -1,1 +1,1 @@
-"""The stages of a walk controller's tick, a file for each: validate, estimate, plan, limit, integrate, finish."""
+"""The stages of a walk controller's tick, a file for each: accept the command, estimate, plan, limit, integrate."""

@@ -17,14 +17,10 @@ class FeltFoot(NamedTuple):
 
     Attributes
     ----------
-    speed : float
-        Upward speed in G [m/s].
-    acceleration : float
-        Upward acceleration of a rising foot [m/s^2].
-    top : float
-        Height in G to which a swinging foot rises [m]; NaN on the ground.
-    top_phase : float
-        Swing phase at which it is there; from then on it goes down.
+    speed, acceleration : float
+        Upward speed in G [m/s]; upward acceleration of a rising foot [m/s^2].
+    top, top_phase : float
+        Height in G to which a swinging foot rises [m], NaN on the ground; swing phase from which on it goes down.
     slide : complex
         Velocity in G of a foot that has landed before the end of its way, which decays [m/s].
     drawn_back : complex or None
@@ -56,7 +52,7 @@ class GroundUnder(NamedTuple):
     steep : bool
         Whether it rises so soon on the way that the foot has to rise before it travels.
     place : complex or None
-        Where in G a foot steps back to that has found no ground [m].
+        Where in G a foot steps that has found no ground, or tries to get past an obstacle [m].
     clears : bool
         Whether a foot that has met an obstacle stays up until it is past that.
     bow, bowed : complex, float

@@ -29,12 +29,10 @@ def final_footholds(
 
     Parameters
     ----------
-    now : GaitState
-        The gait state.
+    now, bandwidth : GaitState, float
+        The gait state; bandwidth with which the twist decays [rad/s].
     rest : complex array, shape (legs,)
         Rest footholds in the heading frame [m].
-    bandwidth : float
-        Bandwidth with which the twist decays [rad/s].
 
     Returns
     -------

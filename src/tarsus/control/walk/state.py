@@ -234,7 +234,7 @@ class StepInputs(NamedTuple):
 
 
 def integrate_twist(origin: complex, yaw: float, travel: Sequence[float]) -> tuple[complex, float]:
-    """Return the heading frame after a travel (x, y, angle): the exponential map of a twist times its duration."""
+    """Return origin [m] and yaw [rad] of a frame after a travel (x, y, angle): the exponential map of a twist."""
     x, y, angle = travel
     half = angle / 2
     # The chord of the path over its arc length.
