@@ -25,6 +25,9 @@ def estimated(walk: WalkComponents, tick: TickState, readings: SensorReadings | 
         return tick
     timing, angles = walk.transitions.timing, walk.time_scaling.angles
     state, legs = walk.ground.sense(readings, dt, tick.gait, timing=timing, angles=angles)
+    if not state.felt:
+        # The guard checks the feet of a walk that does not feel the ground: compensated, they drag.
+        return tick
     ground, deflection = walk.ground, walk.solver.deflection
     bears = [on and ground.contacts.touches(leg) for leg, on in enumerate(state.down.tolist())]
     deflection.step(ground.measured, angles, dt, slope=abs(ground.body.stance.uphill), bears=bears)
