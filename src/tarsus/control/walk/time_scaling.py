@@ -69,7 +69,7 @@ class TimeScaling:
         self._speeds, self._target = np.zeros_like(angles), angles
         # The room is how far the joints are from their ends at least [rad]; clear is for how long it need not look
         # ahead again [s].
-        self._last_dt, self._used, self._room, self._clear = 0.01, 0.0, 0.0, 0.0
+        self._last_dt = self._used = self._room = self._clear = 0.0
 
     def advance(self, integrate: Callable[[float], _T], solve: Callable[[_T], np.ndarray], dt: float) -> _T:
         """Return the state of the walk after a tick.
