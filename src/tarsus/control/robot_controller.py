@@ -162,6 +162,9 @@ class RobotController:
         full = self._command.merged(command)
         if self.guard is None or self.guard.state is GuardState.PASSING:
             self._advance(full, dt, readings)
+        elif isinstance(self._activity, Walking):
+            # The guard lets the joints go on from rest.
+            self._activity.controller.rest()
         self._command.keep(command, full)
         self._time += dt
         self.output = self._shown(*self._guarded(dt))

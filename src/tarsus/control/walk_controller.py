@@ -176,6 +176,10 @@ class WalkController:
         self.time += dt
         return self.angles
 
+    def rest(self) -> None:
+        """Take note that the joints have been held where they are: the walk goes on from rest."""
+        self._walk.time_scaling.rest()
+
     @property
     def walk_state(self) -> WalkState:
         """What the controller does now."""

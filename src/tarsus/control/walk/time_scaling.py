@@ -71,6 +71,10 @@ class TimeScaling:
         # ahead again [s].
         self._last_dt = self._used = self._room = self._clear = 0.0
 
+    def rest(self) -> None:
+        """Take note that the joints have been held where they are: the walk goes on from rest."""
+        self._speeds, self.rate, self._last_dt, self._clear = np.zeros_like(self.angles), 0.0, 0.0, 0.0
+
     def advance(self, integrate: Callable[[float], _T], solve: Callable[[_T], np.ndarray], dt: float) -> _T:
         """Return the state of the walk after a tick.
 
