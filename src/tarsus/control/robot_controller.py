@@ -164,7 +164,7 @@ class RobotController:
             self._advance(full, dt, readings)
         elif isinstance(self._activity, Walking):
             # The guard lets the joints go on from rest.
-            self._activity.controller.rest()
+            self._activity.controller.joints_held()
         self._command.keep(command, full)
         self._time += dt
         self.output = self._shown(*self._guarded(dt))

@@ -176,9 +176,9 @@ class WalkController:
         self.time += dt
         return self.angles
 
-    def rest(self) -> None:
+    def joints_held(self) -> None:
         """Take note that the joints have been held where they are: the walk goes on from rest."""
-        self._walk.time_scaling.rest()
+        self._walk.time_scaling.joints_held()
 
     @property
     def walk_state(self) -> WalkState:

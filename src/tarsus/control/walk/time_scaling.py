@@ -71,7 +71,7 @@ class TimeScaling:
         # ahead again [s].
         self._last_dt = self._used = self._room = self._clear = 0.0
 
-    def rest(self) -> None:
+    def joints_held(self) -> None:
         """Take note that the joints have been held where they are: the walk goes on from rest."""
         self._speeds, self.rate, self._last_dt, self._clear = np.zeros_like(self.angles), 0.0, 0.0, 0.0
 
