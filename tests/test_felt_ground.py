@@ -256,6 +256,19 @@ def test_ground_may_be_deeper_at_once_and_more_so_where_roughness_lasts():
     assert half.deeper == 0.025
 
 
+def test_an_edge_raises_swings_and_the_body_but_allows_for_no_deeper_ground():
+    roughness = Roughness(tarsus.GroundAdaptation())
+    roughness.at_edge(0.048)
+    assert roughness.swing_rise == roughness.body_rise == pytest.approx(0.04)
+    assert roughness.deeper == 0.0
+    roughness.decay(4.0)
+    assert roughness.value == pytest.approx(0.04 / math.e)
+    # What feet have met before still counts.
+    roughness.landed(0.018)
+    roughness.at_edge(0.1)
+    assert roughness.deeper == pytest.approx(0.025)
+
+
 def test_roughness_rises_at_once_falls_slowly_and_is_bounded():
     roughness = Roughness(tarsus.GroundAdaptation(swing_height=0.03, body_height=0.01))
     roughness.landed(0.005)

@@ -201,6 +201,13 @@ def test_a_robot_that_turns_backs_off_though_feet_away_from_the_edge_hold_it():
         assert (back / REST[0]).real <= 0
 
 
+def test_the_body_does_not_back_off_where_a_leg_only_does_not_reach_the_ground():
+    for depth, backs_off in ((0.08, True), (0.015, False)):
+        missing = stepped(MissingGround(NAMES), [(0, depth, False, False)], centre=0.02 + 0j)
+        assert missing.places.keys() == {0}
+        assert bool(missing.back) is backs_off
+
+
 def test_the_body_does_not_back_off_over_a_foot_that_finds_no_ground_behind_it():
     ahead, behind = (stepped(MissingGround(NAMES), [(leg, 0.08, True, True)], twist=(0.1, 0.0, 0.0)) for leg in (0, 2))
     assert ahead.back.real < 0

@@ -245,8 +245,7 @@ class FeltGround:
         on = [on and stand for on, stand in zip(footing.down, stands, strict=True)]
         footing = footing._replace(down=on)
         missing.step(searches, footing, dt, footholds=footholds, deeper=deeper, age=contacts.age)
-        # With the body higher and feet drawn in, legs are steeper beside an edge.
-        self.body.roughness.landed(missing.edge)
+        self.body.roughness.at_edge(missing.edge)
         return stands
 
     def _searches(self, state: GaitState, footing: Footing, stands: list[bool]) -> list[Search]:

@@ -197,8 +197,8 @@ class MissingGround:
         feet, stands, centre, _ = footing
         # The time runs on while all feet without ground have been only a little below the others: they are over no
         # hole, unless the robot tips.
-        only_shallow = all(self.gives_up(leg) and self._shallow[leg] and not self.tips for leg in self.places)
-        self._edge.since = (self._edge.since + dt) * only_shallow
+        shallow = all(self._shallow[leg] and not self.tips for leg in self.places)
+        self._edge.since = (self._edge.since + dt) * (shallow and all(map(self.gives_up, self.places)))
         if self.refuses and not self._stops and self._again < _AGAIN and self._edge.since > _WAITS:
             self._again += 1
             self._edge.leave(self.obstacles.found)
@@ -218,8 +218,8 @@ class MissingGround:
         # A robot that turns meets the edge anew with each step, unless it goes back.
         enough = max(self._tries) < len(_BACK) and not self._edge.turns
         enough &= holds(firm, centre + self._scale * _MARGIN * self._edge.way)
-        # From a foot behind the body, it would back off over the hole.
-        if backed and max(along) > (centre * turn).real and not (self.obstacles.legs or enough):
+        # From a foot behind the body, it would back off over the hole; where legs do not reach, there is none.
+        if backed and not shallow and max(along) > (centre * turn).real and not (self.obstacles.legs or enough):
             self.back = -speed * self._edge.way
             self._backed += speed * dt
 

@@ -93,7 +93,7 @@ class Roughness:
     """
 
     def __init__(self, adaptation: GroundAdaptation, *, scale: float = 1.0) -> None:
-        self.value = self._lasting = 0.0
+        self.value = self._met = self._lasting = 0.0
         self.adaptation, self._scale = adaptation, scale
 
     def landed(self, off: float) -> None:
@@ -104,11 +104,23 @@ class Roughness:
         off : float
             Its height over the expected ground [m].
         """
-        self.value = max(self.value, abs(off) - self._scale * _EVEN)
+        self._met = max(self._met, abs(off) - self._scale * _EVEN)
+        self.value = max(self.value, self._met)
+
+    def at_edge(self, depth: float) -> None:
+        """Take note of a leg that may rest on the edge of a step: beside it, legs are steeper with the body higher.
+
+        Parameters
+        ----------
+        depth : float
+            How far below the expected ground its foot is [m].
+        """
+        self.value = max(self.value, depth - self._scale * _EVEN)
 
     def collided(self) -> None:
         """Take note of a collision."""
-        self.value = max(self.value, self._scale * _COLLISION)
+        self._met = max(self._met, self._scale * _COLLISION)
+        self.value = max(self.value, self._met)
 
     def decay(self, cycles: float) -> None:
         """Forget.
@@ -118,9 +130,10 @@ class Roughness:
         cycles : float
             Cycles that have passed.
         """
-        self.value *= math.exp(-cycles / _MEMORY)
-        rising = self._lasting + (self.value - self._lasting) * -math.expm1(-cycles / _LASTS)
-        self._lasting = min(rising, self.value)
+        kept = math.exp(-cycles / _MEMORY)
+        self.value, self._met = self.value * kept, self._met * kept
+        rising = self._lasting + (self._met - self._lasting) * -math.expm1(-cycles / _LASTS)
+        self._lasting = min(rising, self._met)
 
     @property
     def swing_rise(self) -> float:
@@ -140,7 +153,7 @@ class Roughness:
     @property
     def deeper(self) -> float:
         """How much deeper ground may be than expected [m]."""
-        once = min(_DEEPER * self.value, self._scale * _DEEPEST)
+        once = min(_DEEPER * self._met, self._scale * _DEEPEST)
         return max(once, min(_DEEPER * self._lasting, self._scale * _LASTING_DEEPEST))
 
     def cycle_time(self, on_slope: float = 1.0) -> float:
