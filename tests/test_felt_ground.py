@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 import tarsus
+from tarsus.control.limiter.protocol import TwistGrant, TwistRequest
 from tarsus.control.pose.admittance import Admittance
 from tarsus.control.pose.posture_feedback import BodyMove, PostureFeedback
 from tarsus.control.readings import SensorReadings, ValidReadings
@@ -15,6 +16,7 @@ from tarsus.control.sensing.foot_loads import FootLoads
 from tarsus.control.sensing.leg_odometry import CommandedMotion, LegOdometry
 from tarsus.control.sensing.validation import ReadingsValidator
 from tarsus.control.terrain.foot_contacts import FootContacts
+from tarsus.control.terrain.missing_ground import MissingGround
 from tarsus.control.terrain.reach import Reach
 from tarsus.control.terrain.roughness import Roughness
 from tarsus.control.terrain.support import Footing, Support, Tipping, along_gravity, holds
@@ -445,11 +447,27 @@ def test_a_robot_tips_that_sinks_fast_at_a_foot_that_is_low():
     assert tipped(slow) is None
     assert tipped(fast, depth=0.005) is None
     assert tipped([*fast[:2], None, *fast[2:]]) is None
-    assert tipped([0.5 * pitch for pitch in fast]) is None
-    assert tipped([0.5 * pitch for pitch in fast], scale=0.5) in (0, 5)
+    assert tipped([0.3 * pitch for pitch in fast]) is None
+    assert tipped([0.3 * pitch for pitch in fast], scale=0.3) in (0, 5)
     # It is over once the body has come back.
     assert tipped([*fast, 0.11]) in (0, 5)
     assert tipped([*fast, 0.03]) is None
+
+
+def test_a_robot_that_tips_for_long_has_met_an_edge():
+    tipping, missing, tips = Tipping(1.0), MissingGround(STRIDER.leg_names), []
+    for pitch in [0.0, 0.05, 0.1, *[0.12] * 12]:
+        tipping.step(STANDING, [0.02] * 6, (0.0, pitch), 0.04)
+        tips += [] if tipping.leg is None else [tipping.at_edge]
+    assert not any(tips[:5])
+    assert all(tips[7:10])
+    missing.tipped(tipping.leg, 0.2 + 0.1j)
+    request = TwistRequest((0.1, 0.0, 0.0), 0.01, None, np.zeros(3))
+    assert missing.limit(request, TwistGrant()).limitations[0].cause == "the robot tips at the foot"
+    # Another foot at the same edge does not turn it.
+    missing.tipped(1, -0.2 + 0.1j)
+    assert missing.refuses
+    assert not missing.limit(request._replace(twist=(-0.1, 0.0, 0.0)), TwistGrant()).limitations
 
 
 def test_a_switch_that_stays_open_is_told_by_the_feet_that_its_foot_lifts_off():

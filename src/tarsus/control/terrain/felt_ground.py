@@ -242,6 +242,8 @@ class FeltGround:
         if self._loads.estimated:
             self._tipping.step(footing, depths, tilt, dt)
             missing.lost = self._tipping.leg if missing.lost is None else missing.lost
+            if missing.lost is not None and self._tipping.at_edge:
+                missing.tipped(missing.lost, footing.places[missing.lost])
         on = [on and stand for on, stand in zip(footing.down, stands, strict=True)]
         footing = footing._replace(down=on)
         missing.step(searches, footing, dt, footholds=footholds, deeper=deeper, age=contacts.age)

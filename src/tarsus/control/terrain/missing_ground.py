@@ -38,12 +38,10 @@ _SURE = 0.0125
 # Where a foot steps back to, from its rest foothold against its way, over how far from there it may stand; with the
 # last, the body backs off as far as it may.
 _BACK = (0.4, 1.0, 1.0)
-# A foot this close to its place is there [m].
-_THERE = 0.004
 # The body backs off until feet this far from the edge hold it with this margin [m], so far at most [m], so fast [m/s].
 _FIRM, _MARGIN, _BACKS, _SPEED = 0.06, 0.03, 0.08, 0.15
-# A foot that finds no ground at less depth than this is over no hole: the leg does not reach there [m].
-_SHALLOW = 0.02
+# A foot this close to its place is there; one that finds no ground at less depth than the second is over no hole [m].
+_THERE, _SHALLOW = 0.004, 0.02
 # How often the walk goes on with other footholds where there may be no hole, after which time [s], and for how long it
 # makes up for no lost time then [s].
 _AGAIN, _WAITS, _CAREFUL = 2, 1.0, 1.5
@@ -127,6 +125,12 @@ class MissingGround:
     def gives_up(self, leg: int) -> bool:
         """Return whether a foot has found no ground at any place."""
         return self._tries[leg] > len(_BACK)
+
+    def tipped(self, leg: int, foot: complex) -> None:
+        """Take note of an edge on which a leg rests: the robot has tipped at its foot, here in the heading frame."""
+        if not self._edge.way:
+            self._edge.way, self._again = foot / abs(foot), max(self._again, _AGAIN - 1)
+            self._cause = self._names[leg], "the robot tips at the foot"
 
     def step(
         self,

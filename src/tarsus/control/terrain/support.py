@@ -21,8 +21,8 @@ _GRACE = 0.15
 # Least angle by which the centre of mass is inside the support polygon, as seen from it [rad].
 _LEAST_ANGLE = 0.02
 # How far a body sinks at a foot that gives way, at least [m], within which time [s]; how far below the expected ground
-# such a foot is [m].
-_SINKS, _FOLLOWED, _LOW = 0.025, 0.6, 0.008
+# such a foot is [m]; how long a robot tips at the edge of a hole, not on rough ground [s].
+_SINKS, _FOLLOWED, _LOW, _LASTS = 0.015, 0.6, 0.008, 0.2
 HALTING = 0.5
 """Below this pace the robot waits for support."""
 
@@ -118,10 +118,13 @@ class Tipping:
     ----------
     leg : int or None
         The leg.
+    at_edge : bool
+        Whether the robot has tipped there for long.
     """
 
     def __init__(self, scale: float) -> None:
         self.leg: int | None = None
+        self.at_edge, self._since = False, 0.0
         self._scale = scale
         self._before: RollPitch | None = None
 
@@ -136,6 +139,8 @@ class Tipping:
             By how much the body is tilted more than commanded, None where it is not measured [rad]; time since the last
             call [s].
         """
+        self._since = (self._since + dt) * (self.leg is not None)
+        self.at_edge = self._since > _LASTS
         if tilt is None:
             self.leg = self._before = None
             return
