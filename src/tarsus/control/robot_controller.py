@@ -163,7 +163,6 @@ class RobotController:
         if self.guard is None or self.guard.state is GuardState.PASSING:
             self._advance(full, dt, readings)
         elif isinstance(self._activity, Walking):
-            # The guard lets the joints go on from rest.
             self._activity.controller.joints_held()
         self._command.keep(command, full)
         self._time += dt
@@ -183,8 +182,7 @@ class RobotController:
         self._rates = (self._now.angles - before) / dt
         if isinstance(activity, Walking):
             self._shown_gait, self._cycle_time = activity.gait, activity.controller.cycle_time
-        if type(activity) is Walking:
-            self._gait = activity.gait
+            self._gait = activity.gait if type(activity) is Walking else self._gait
         if isinstance(activity, Playing) and activity.done:
             self._end_change(activity)
 
@@ -192,8 +190,6 @@ class RobotController:
     def _at_rest(self) -> bool:
         still = isinstance(self._activity, Resting) or (isinstance(self._activity, Walking) and self._activity.stands)
         return still and float(np.abs(self._rates).max()) < (_AT_REST_DAMAGED if self.leg_failures.failed else _AT_REST)
-
-    # Changes of state.
 
     def _begin_change(self, command: Command) -> None:
         """Begin the next change on the way to the state that is wanted, once the robot is at rest."""
@@ -259,8 +255,6 @@ class RobotController:
             yield Limitation(kind=LimitationKind.TWIST, cause=cause, asked=1.0, granted=0.0)
         if command.foot_velocities or any(point is not None for point in (command.foot_targets or {}).values()):
             yield Limitation(kind=LimitationKind.FOOT_TARGET, cause=cause, asked=1.0, granted=0.0)
-
-    # What is given out.
 
     def _guarded(self, dt: float) -> tuple[Float[np.ndarray, "legs 3"], tuple[Intervention, ...]]:
         """Return the angles that the guard lets through, and the interventions that begin with this tick."""
