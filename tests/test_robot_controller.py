@@ -18,6 +18,8 @@ from tarsus.errors import InputError, TarsusError, UnknownNameError
 from tarsus.gait.gait import Gait
 from tarsus.kinematics.leg import forward_kinematics
 from tarsus.robot.file import list_robots, load_robot
+from tarsus.simulation import SensorSuite, SimulatedPlant
+from tarsus.simulation.sensors.suite import Sensor
 
 DT = 0.01
 STRIDER = load_robot("strider")
@@ -333,6 +335,44 @@ def test_while_the_guard_holds_the_state_is_fault_and_then_it_goes_on():
 def test_options_that_are_none_of_the_choices_are_refused(options, message):
     with pytest.raises(InputError, match=re.escape(message)):
         RobotController(STRIDER, **options)
+
+
+@pytest.mark.parametrize("start", ["standing", "lying"])
+def test_once_the_guard_lets_it_the_robot_goes_on_from_rest(start):
+    # In ticks as short as these, joints that went on at the speed that they had would be held again and again.
+    robot, dt = load_robot("mithi"), 0.0025
+    controller = RobotController(robot, start=start)
+    command = Command(twist=(0.05, 0.0, 0.0), state="standing")
+    for _ in range(600):
+        controller.step(command, dt)
+    assert not controller.guard.counts
+    check = controller.guard.check
+    controller.guard.check = lambda angles, *rest: check(angles + 0.2, *rest)
+    controller.step(command, dt)
+    controller.guard.check = check
+    for _ in range(600):
+        last = controller.step(command, dt)
+    assert sum(controller.guard.counts.values()) <= 6
+    assert last.state is not RobotState.FAULT
+
+
+def test_the_first_readings_of_a_tilted_robot_do_not_trip_the_guard():
+    for name, dt in (("mithi", 0.0025), ("phoenix", 0.005)):
+        controller = RobotController(load_robot(name))
+        for tick in range(100):
+            readings = SensorReadings(contacts=[True] * 6, attitude=(0.2 * np.exp(-3 * tick * dt), 0.0))
+            controller.step((0.0, 0.0, 0.0), dt, readings)
+        assert not controller.guard.counts
+
+
+def test_joint_angles_and_torques_alone_move_no_foot_before_contacts_are_known():
+    robot = load_robot("phantomx")
+    sensors = SensorSuite(joint_angles=Sensor(), torques=Sensor())
+    plant, controller = SimulatedPlant(robot, sensors=sensors, servos="catalogue"), RobotController(robot)
+    plant.start(controller.output)
+    for _ in range(150):
+        controller.step((0.07, 0.0, 0.0), 0.01, plant.step(controller.output, 0.01))
+    assert not controller.guard.counts
 
 
 @pytest.mark.parametrize("guard", [1, "yes", None])

@@ -162,8 +162,8 @@ class RobotController:
         full = self._command.merged(command)
         if self.guard is None or self.guard.state is GuardState.PASSING:
             self._advance(full, dt, readings)
-        elif isinstance(self._activity, Walking):
-            self._activity.controller.joints_held()
+        elif not isinstance(self._activity, Resting):
+            self._activity.joints_held()
         self._command.keep(command, full)
         self._time += dt
         self.output = self._shown(*self._guarded(dt))

@@ -93,6 +93,10 @@ class SequencePlayer:
         """Brake, then play in reverse towards the start of the sequence."""
         self._target_rate = -1.0
 
+    def joints_held(self) -> None:
+        """Take note that the joints have been held where they are: playback goes on from rest."""
+        self.rate = 0.0
+
     def step(self, dt: float) -> Float[np.ndarray, "legs 3"]:
         """Advance by a time step and return the joint angles.
 

@@ -94,6 +94,10 @@ class Walking:
         self.measured = self._validator.validate(readings, dt) if felt is None else self.controller.measured
         self._rejected = rejections(self.measured) if felt is None else []
 
+    def joints_held(self) -> None:
+        """Take note that the joints have been held where they are: they go on from rest."""
+        self.controller.joints_held()
+
     @property
     def gait(self) -> Gait:
         """The order of the steps of all legs."""
@@ -184,6 +188,10 @@ class Playing:
             self._player.step(dt)
         else:
             self._time += dt
+
+    def joints_held(self) -> None:
+        """Take note that the joints have been held where they are: they go on from rest."""
+        self._player.joints_held()
 
     @property
     def _brakes(self) -> Braking | None:
