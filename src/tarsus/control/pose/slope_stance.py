@@ -17,7 +17,8 @@ __all__ = ["SlopeStance"]
 
 # Slopes from which on, and up to which, the stance changes [rad].
 _LEAST, _MOST = math.radians(6.0), math.radians(14.0)
-# How far legs turn about their coxa axes [rad]; how far feet are drawn in, over the length of femur and tibia.
+# How far legs turn about their coxa axes on a slope along the body [rad]: across it, feet would come too close
+# together; how far feet are drawn in, over the length of femur and tibia.
 _TURNED, _DRAWN_IN = math.radians(30.0), 0.13
 # Cycle time on a slope on which the stance changes, over that on level ground: feet slide down a slope with each step,
 # and longer ones are fewer.
@@ -26,6 +27,8 @@ _LONGER = 1.125
 _DOWNHILL = 2 / 3
 # Smaller changes wait: while the robot walks, and while it would step for them alone [m].
 _SMALLEST, _STANDING = 0.005, 0.03
+# A slope below this has no direction.
+_NO_SLOPE = 1e-9
 # Room between body and slope that sagging legs leave [m].
 _ROOM = 0.04
 
@@ -83,7 +86,8 @@ class SlopeStance:
         out = rest - self._mounts
         angle = np.angle(out * uphill.conjugate())
         nearer = drawn_in * (1 - share) + share * self._drawn_in * np.clip(-np.cos(angle) / _DOWNHILL, 0.0, 1.0)
-        wanted = out * ((1 - nearer / np.abs(out)) * np.exp(1j * share * _TURNED * np.sin(2 * angle)) - 1)
+        turned = share * _TURNED * (uphill.real / max(abs(uphill), _NO_SLOPE)) ** 2
+        wanted = out * ((1 - nearer / np.abs(out)) * np.exp(1j * turned * np.sin(2 * angle)) - 1)
         least = self._scale * (_SMALLEST if walks else _STANDING) if share or drawn_in else 0.0
         if float(np.abs(wanted - self.shift).max()) > least:
             self.shift = wanted
