@@ -470,6 +470,29 @@ def test_a_robot_that_tips_for_long_has_met_an_edge():
     assert not missing.limit(request._replace(twist=(-0.1, 0.0, 0.0)), TwistGrant()).limitations
 
 
+def test_a_walk_by_estimated_contacts_does_not_go_on_over_an_edge_at_which_it_has_tipped(monkeypatch):
+    controller = WalkController(STRIDER)
+    readings = SensorReadings(contacts=[True] * 6, attitude=(0.0, 0.0))
+    controller.step((0.1, 0.0, 0.0), 0.01, readings=readings)
+    ground = controller._walk.ground
+
+    def estimated(*_):
+        ground._loads.estimated = True
+        return [True] * 6
+
+    monkeypatch.setattr(ground._loads, "contacts", estimated)
+    tipping = Tipping(1.0)
+    tipping.leg, tipping.at_edge, tipping.step = 0, True, lambda *_: None
+    ground._tipping = tipping
+    for _ in range(20):
+        controller.step((0.1, 0.0, 0.0), 0.01, readings=readings)
+    assert ground.missing.refuses
+    assert {limit.cause for limit in controller.limitations} == {"the robot tips at the foot"}
+    for _ in range(3):
+        controller.step((-0.1, 0.0, 0.0), 0.01, readings=readings)
+    assert not ground.missing.refuses
+
+
 def test_a_switch_that_stays_open_is_told_by_the_feet_that_its_foot_lifts_off():
     contacts = FootContacts(6)
     for tick in range(60):

@@ -356,6 +356,19 @@ def test_once_the_guard_lets_it_the_robot_goes_on_from_rest(start):
     assert last.state is not RobotState.FAULT
 
 
+def test_a_robot_that_lies_stays_as_it_is_while_the_guard_holds():
+    controller = RobotController(STRIDER, start="lying")
+    before, check = controller.output.angles, controller.guard.check
+    controller.guard.check = lambda angles, *rest: check(angles + 0.2, *rest)
+    controller.step((0.0, 0.0, 0.0), DT)
+    controller.guard.check = check
+    for _ in range(200):
+        last = controller.step((0.0, 0.0, 0.0), DT)
+    assert controller.guard.counts
+    assert last.state is RobotState.LYING
+    np.testing.assert_allclose(last.angles, before, atol=1e-9)
+
+
 def test_the_first_readings_of_a_tilted_robot_do_not_trip_the_guard():
     for name, dt in (("mithi", 0.0025), ("phoenix", 0.005)):
         controller = RobotController(load_robot(name))
