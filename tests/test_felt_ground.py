@@ -482,7 +482,7 @@ def test_a_walk_by_estimated_contacts_does_not_go_on_over_an_edge_at_which_it_ha
 
     monkeypatch.setattr(ground._loads, "contacts", estimated)
     tipping = Tipping(1.0)
-    tipping.leg, tipping.at_edge, tipping.step = 0, True, lambda *_: None
+    tipping.leg, tipping._since, tipping.step = 0, 1.0, lambda *_: None
     ground._tipping = tipping
     for _ in range(20):
         controller.step((0.1, 0.0, 0.0), 0.01, readings=readings)

@@ -182,7 +182,8 @@ class RobotController:
         self._rates = (self._now.angles - before) / dt
         if isinstance(activity, Walking):
             self._shown_gait, self._cycle_time = activity.gait, activity.controller.cycle_time
-            self._gait = activity.gait if type(activity) is Walking else self._gait
+        if type(activity) is Walking:
+            self._gait = activity.gait
         if isinstance(activity, Playing) and activity.done:
             self._end_change(activity)
 

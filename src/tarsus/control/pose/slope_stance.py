@@ -1,7 +1,8 @@
-"""Slope stance: legs turn across a slope and those downhill are drawn in, so that a level body stays within reach."""
+"""Slope stance: legs turn across a slope along the body, and feet downhill are drawn in, to keep a level body."""
 
 from __future__ import annotations
 
+import cmath
 import math
 from typing import TYPE_CHECKING
 
@@ -27,8 +28,6 @@ _LONGER = 1.125
 _DOWNHILL = 2 / 3
 # Smaller changes wait: while the robot walks, and while it would step for them alone [m].
 _SMALLEST, _STANDING = 0.005, 0.03
-# A slope below this has no direction.
-_NO_SLOPE = 1e-9
 # Room between body and slope that sagging legs leave [m].
 _ROOM = 0.04
 
@@ -86,7 +85,7 @@ class SlopeStance:
         out = rest - self._mounts
         angle = np.angle(out * uphill.conjugate())
         nearer = drawn_in * (1 - share) + share * self._drawn_in * np.clip(-np.cos(angle) / _DOWNHILL, 0.0, 1.0)
-        turned = share * _TURNED * (uphill.real / max(abs(uphill), _NO_SLOPE)) ** 2
+        turned = share * _TURNED * math.cos(cmath.phase(uphill)) ** 2
         wanted = out * ((1 - nearer / np.abs(out)) * np.exp(1j * turned * np.sin(2 * angle)) - 1)
         least = self._scale * (_SMALLEST if walks else _STANDING) if share or drawn_in else 0.0
         if float(np.abs(wanted - self.shift).max()) > least:

@@ -118,15 +118,17 @@ class Tipping:
     ----------
     leg : int or None
         The leg.
-    at_edge : bool
-        Whether the robot has tipped there for long.
     """
 
     def __init__(self, scale: float) -> None:
         self.leg: int | None = None
-        self.at_edge, self._since = False, 0.0
-        self._scale = scale
+        self._scale, self._since = scale, 0.0
         self._before: RollPitch | None = None
+
+    @property
+    def at_edge(self) -> bool:
+        """Whether the robot has tipped at the leg's foot for long."""
+        return self.leg is not None and self._since > _LASTS
 
     def step(self, footing: Footing, depths: Sequence[float], tilt: RollPitch | None, dt: float) -> None:
         """Take in the tilt.
@@ -140,7 +142,6 @@ class Tipping:
             call [s].
         """
         self._since = (self._since + dt) * (self.leg is not None)
-        self.at_edge = self._since > _LASTS
         if tilt is None:
             self.leg = self._before = None
             return
