@@ -64,7 +64,7 @@ figures: $(VENV)/.dev web browser
 	$(BIN)/python docs/make_screenshots.py
 	$(BIN)/python docs/refresh.py
 
-# How far plans are true in physics: the tables of docs/how-true.md.
+# How far plans are true in physics: the tables of docs/how-true.md; walks over rough ground: those of docs/ground-measured.md.
 truth: $(VENV)/.dev
 	$(BIN)/python docs/how_true.py
 	$(BIN)/python docs/statics_true.py
@@ -79,7 +79,7 @@ truth: $(VENV)/.dev
 	$(BIN)/python docs/estimated_contacts.py
 	$(BIN)/python docs/ablation.py
 
-# An hour of walks in physics with robots, terrain, commands and faults drawn at random: a table of docs/ground.md.
+# An hour of walks in physics with robots, terrain, commands and faults drawn at random: a table of docs/ground-measured.md.
 hour: $(VENV)/.dev
 	$(BIN)/python docs/random_hour.py --minutes 60
 

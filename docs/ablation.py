@@ -1,4 +1,4 @@
-"""Write the table of ground.md that shows what each mechanism of the felt walk is worth: it is switched off.
+"""Write the table of ground-measured.md that shows what each mechanism of the felt walk is worth: it is switched off.
 
 python docs/ablation.py --seeds 3
 python docs/ablation.py --grounds blocks40 --without obstacles --print

@@ -1,4 +1,4 @@
-"""Write the table of ground.md of walks whose contacts are estimated by joint angles.
+"""Write the table of ground-measured.md of walks whose contacts are estimated by joint angles.
 
 python docs/estimated_contacts.py --seeds 5
 python docs/estimated_contacts.py --robots strider --print

@@ -1,4 +1,4 @@
-"""Write the table of ground.md with gaits other than the robots' own, felt.
+"""Write the table of ground-measured.md with gaits other than the robots' own, felt.
 
 python docs/gaits_on_ground.py --jobs 16
 """

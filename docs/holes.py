@@ -1,4 +1,4 @@
-"""Write the table of trenches of ground.md: walks to the edge of a trench in physics, and back.
+"""Write the table of trenches of ground-measured.md: walks to the edge of a trench in physics, and back.
 
 python docs/holes.py --robots strider --print
 """
@@ -17,7 +17,7 @@ import tarsus
 from page_tables import Several, measured, write_tables
 from tarsus.simulation import SimulatedPlant, terrain
 
-PAGE = Path(__file__).parent / "ground.md"
+PAGE = Path(__file__).parent / "ground-measured.md"
 ROBOTS = ("strider", "phantomx", "makeyourpet")
 # Widths and depth of the trenches, where their first edge is, and what is walked ahead and back [m].
 WIDTHS, DEPTH, EDGES, AHEAD, BACK = (0.08, 0.2), 0.15, (0.5, 0.53, 0.56), 0.9, 0.4

@@ -1,4 +1,4 @@
-"""Write the table of obstacles of ground.md: walks to a wall or a post in physics, and back.
+"""Write the table of obstacles of ground-measured.md: walks to a wall or a post in physics, and back.
 
 python docs/obstacles.py --robots strider --print
 """
@@ -9,7 +9,6 @@ import argparse
 import itertools
 import math
 from dataclasses import dataclass
-from pathlib import Path
 from statistics import median
 from typing import Any, NamedTuple
 from unittest.mock import patch
@@ -19,13 +18,12 @@ import numpy as np
 
 import tarsus
 from page_tables import Several, measured, write_tables
+from rough_ground import PAGE, ROBOTS
 from tarsus.control.terrain import ground_contact
 from tarsus.simulation import SensorSuite, SimulatedPlant, terrain
 from tarsus.simulation.sensors.suite import FootSwitch, Sensor
 from tarsus.simulation.terrain.surface import surface
 
-PAGE = Path(__file__).parent / "ground.md"
-ROBOTS = ("strider", "phantomx", "makeyourpet")
 # Where obstacles begin, and what is walked ahead and back [m].
 EDGES, AHEAD, BACK = (0.5, 0.53, 0.56), 0.9, 0.4
 # Shares of the top speed.

@@ -1,4 +1,4 @@
-"""Write the table of random walks in ground.md: robots, terrain, commands and faults drawn at random, in physics.
+"""Write the table of random walks in ground-measured.md: robots, terrain, commands and faults drawn at random.
 
 python docs/random_hour.py --minutes 60 --jobs 16
 python docs/random_hour.py --minutes 5 --seed 100 --print

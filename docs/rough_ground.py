@@ -1,4 +1,4 @@
-"""Write the tables of ground.md: walks over rough ground in physics, felt and blind, and with each mechanism off.
+"""Write the table of ground-measured.md of walks over rough ground in physics, felt and blind.
 
 python docs/rough_ground.py --jobs 16 --seeds 10
 python docs/rough_ground.py --cases felt blind --grounds flat blocks40 --robots strider --seeds 2 --print
@@ -21,7 +21,7 @@ from page_tables import Several, measured, write_tables
 from tarsus.simulation import SensorSuite, SimulatedPlant, terrain
 from tarsus.simulation.sensors.suite import FootSwitch, Sensor
 
-PAGE = Path(__file__).parent / "ground.md"
+PAGE = Path(__file__).parent / "ground-measured.md"
 ROBOTS = ("strider", "phantomx", "makeyourpet")
 # Way that is commanded in each walk [m], and how near to the start the ground is level [m].
 WAY, CLEAR = 1.2, 0.35

@@ -1,4 +1,4 @@
-"""Write the table of ground.md that compares walks over ground that is felt with those over ground that is seen, too.
+"""Write the table of ground-measured.md that compares walks that see the ground with those that feel it alone.
 
 python docs/seen_ground.py --seeds 10
 """

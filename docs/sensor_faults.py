@@ -1,4 +1,4 @@
-"""Write the tables of faults in ground.md: what bad readings cost, and how a robot walks on without a leg.
+"""Write the tables of faults in ground-measured.md: what bad readings cost, and how a robot walks on without a leg.
 
 python docs/sensor_faults.py --seeds 5 --jobs 2
 python docs/sensor_faults.py --robots strider --faults 'hobby sensors' --print
