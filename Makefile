@@ -73,6 +73,7 @@ truth: $(VENV)/.dev
 	$(BIN)/python docs/rough_ground.py
 	$(BIN)/python docs/gaits_on_ground.py
 	$(BIN)/python docs/seen_ground.py
+	$(BIN)/python docs/cross_slopes.py
 	$(BIN)/python docs/edges.py
 	$(BIN)/python docs/obstacles.py
 	$(BIN)/python docs/sensor_faults.py

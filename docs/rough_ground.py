@@ -70,6 +70,9 @@ class Case(NamedTuple):
     servos: str = "catalogue"
     options: dict[str, Any] = {}  # noqa: RUF012 - never changed
     gait: str = ""  # that of the robot
+    course: float = 0.0  # where it walks, from ahead to the left [deg]
+    pace: float = 0.5  # share of the top speed
+    stands: float = 0.0  # how long, before it walks [s]
 
 
 NOT_ADAPTED = {
@@ -97,26 +100,30 @@ GAIT_CASES = {gait: Case(gait=gait) for gait in ("tetrapod", "ripple", "wave")}
 
 
 class Outcome(NamedTuple):
-    """What became of a walk: way over the commanded one, RMS tilt [deg], slip [m/m], what happened to the body."""
+    """What became of a walk: way over the commanded one, RMS tilt [deg], slip [m/m], the body, greatest tilt [deg]."""
 
     way: float
     tilt: float
     slip: float
     touched: bool
     fell: bool
+    steepest: float
 
 
 def walk(job: tuple[str, str, str, int]) -> Outcome:
-    """Return the outcome of one walk at half the top speed."""
+    """Return the outcome of one walk."""
     name, ground, key, seed = job
     robot, case = tarsus.load_robot(name), (CASES | GAIT_CASES)[key]
     gait = tarsus.Gait.named(case.gait or robot.gait.name)
-    speed = 0.5 * tarsus.WalkController(robot, gait).top_speed((1, 0, 0))
+    course = np.array([math.cos(math.radians(case.course)), math.sin(math.radians(case.course)), 0.0])
+    speed = case.pace * tarsus.WalkController(robot, gait).top_speed(course.tolist())
     plant = SimulatedPlant(robot, terrain=GROUNDS[ground](seed), sensors=case.sensors, servos=case.servos, seed=seed)
     controller = tarsus.RobotController(robot, gait, **case.options)
     output, dt = controller.output, 0.01
     plant.start(output)
-    start, tilts, slip, lying, touched, fell = plant.state.body.position[0], [], 0.0, 0.0, False, False
+    for _ in range(round(case.stands / dt)):
+        output = controller.step((0.0, 0.0, 0.0), dt, plant.step(output, dt))
+    start, tilts, slip, lying, touched, fell = np.asarray(plant.state.body.position), [], 0.0, 0.0, False, False
     ticks = round(WAY / speed / dt)
     for _ in range(ticks):
         readings = plant.step(output, dt)
@@ -129,23 +136,29 @@ def walk(job: tuple[str, str, str, int]) -> Outcome:
         fell = lying > LIES or tilts[-1] > math.pi / 4
         if fell:
             break
-        output = controller.step((speed, 0.0, 0.0), dt, readings)
-    way = float(plant.state.body.position[0] - start)
+        output = controller.step((speed * course).tolist(), dt, readings)
+    way = float((plant.state.body.position - start) @ course)
     return Outcome(
         way / (speed * dt * ticks),
         math.degrees(math.sqrt(np.mean(np.square(tilts)))),
         slip / max(way, 1e-3),
         touched,
         fell,
+        math.degrees(max(tilts)),
     )
 
 
 def cell(found: list[Outcome]) -> str:
     """Return medians: way, tilt and slip, with how often the body touched the ground, and how often the robot fell."""
     way, tilt, slip = (float(np.median([getattr(each, name) for each in found])) for name in ("way", "tilt", "slip"))
+    return f"{way:.2f}, {tilt:.1f}, {1000 * slip:.0f}{mishaps(found)}"
+
+
+def mishaps(found: list[Outcome]) -> str:
+    """Return how often the body touched the ground, and how often the robot fell."""
     counts = {name: sum(getattr(each, name) for each in found) for name in ("touched", "fell")}
     notes = [f"{count} of {len(found)} {name}" for name, count in counts.items() if count]
-    return f"{way:.2f}, {tilt:.1f}, {1000 * slip:.0f}" + (f" ({', '.join(notes)})" if notes else "")
+    return f" ({', '.join(notes)})" if notes else ""
 
 
 def table(robot: str, grounds: list[str], cases: list[str], found: dict[tuple[str, str, str], list[Outcome]]) -> str:
