@@ -33,6 +33,20 @@ def test_every_file_the_documents_point_to_is_there():
         assert not missing, f"{document.name} points to {missing}"
 
 
+def headings(document):
+    text = re.sub(r"```.*?```", "", document.read_text(encoding="utf-8"), flags=re.DOTALL)
+    titles = re.findall(r"^#+ (.*)$", text, flags=re.MULTILINE)
+    return {re.sub(r"[^\w\- ]", "", title.lower()).replace(" ", "-") for title in titles}
+
+
+def test_every_heading_the_documents_point_to_is_there():
+    for document in [*ROOT.glob("*.md"), *(ROOT / "docs").glob("*.md")]:
+        links = re.findall(r"\]\(([^)#:]*)#([^)]+)\)", document.read_text(encoding="utf-8"))
+        pages = [(document.parent / page if page else document, heading) for page, heading in links]
+        missing = [(page.name, heading) for page, heading in pages if heading not in headings(page)]
+        assert not missing, f"{document.name} points to {missing}"
+
+
 def test_every_make_target_the_documents_name_exists():
     makefile = (ROOT / "Makefile").read_text(encoding="utf-8")
     for document in [ROOT / "README.md", ROOT / "CONTRIBUTING.md"]:
