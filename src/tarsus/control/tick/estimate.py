@@ -29,7 +29,9 @@ def estimated(walk: WalkComponents, tick: TickState, readings: SensorReadings | 
         # The guard checks the feet of a walk that does not feel the ground: compensated, they drag.
         return tick
     ground, deflection = walk.ground, walk.solver.deflection
-    bears = [on and ground.contacts.touches(leg) for leg, on in enumerate(state.down.tolist())]
+    # Of use where forces are not measured.
+    down = () if ground.measured.forces else state.down.tolist()
+    bears = [on and ground.contacts.touches(leg) for leg, on in enumerate(down)]
     deflection.step(ground.measured, angles, dt, slope=abs(ground.body.stance.uphill), bears=bears)
     ground.body.lowered = deflection.lowered
     if legs:
