@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 import tarsus
+from sample_contacts import find_open, take_in
 from tarsus.control.limiter.protocol import TwistGrant, TwistRequest
 from tarsus.control.pose.admittance import Admittance
 from tarsus.control.pose.posture_feedback import BodyMove, PostureFeedback
@@ -70,14 +71,14 @@ def test_an_error_estimate_is_bounded_and_a_contact_that_is_not_measured_becomes
 def test_contacts_are_followed_over_time():
     contacts = FootContacts(2)
     for _ in range(5):
-        contacts.step([True, False], [True, False], 0.01)
+        take_in(contacts, [True, False], [True, False], 0.01)
     assert contacts.touches(0)
     assert not contacts.touches(1)
     assert contacts.lifted == [False, True]
     assert not contacts.standing[1]
     assert not contacts.supports(1)
     for _ in range(400):
-        contacts.step([True, False], [True, True], 0.01)
+        take_in(contacts, [True, False], [True, True], 0.01)
     assert not contacts.supports(1)
     assert contacts.lifted == [False, False]
 
@@ -496,43 +497,43 @@ def test_a_walk_by_estimated_contacts_does_not_go_on_over_an_edge_at_which_it_ha
 def test_a_switch_that_stays_open_is_told_by_the_feet_that_its_foot_lifts_off():
     contacts = FootContacts(6)
     for tick in range(60):
-        contacts.step([False, tick % 4 > 1, *[True] * 4], [True] * 6, 0.02)
-        contacts.find_open(STANDING, None, 0.02)
+        take_in(contacts, [False, tick % 4 > 1, *[True] * 4], [True] * 6, 0.02)
+        find_open(contacts, STANDING, None, 0.02)
     assert contacts.is_open(0)
     assert contacts.standing[0]
     assert contacts.touches(0)
     assert contacts.supports(0)
     assert not contacts.is_known(0)
     assert contacts.is_known(1)
-    contacts.step([True] * 6, [True] * 6, 0.02)
+    take_in(contacts, [True] * 6, [True] * 6, 0.02)
     assert contacts.is_known(0)
     over_a_hole = FootContacts(6)
     for _ in range(60):
-        over_a_hole.step([False, *[True] * 5], [True] * 6, 0.02)
-        over_a_hole.find_open(STANDING, (0.0, 0.0), 0.02)
+        take_in(over_a_hole, [False, *[True] * 5], [True] * 6, 0.02)
+        find_open(over_a_hole, STANDING, (0.0, 0.0), 0.02)
     assert not over_a_hole.is_open(0)
 
 
 def test_a_contact_that_is_missing_once_after_some_ticks_as_planned_is_not_lost():
     contacts = FootContacts(6)
-    contacts.step([True] * 6, [True] * 6, 0.04, count=4)
-    contacts.step([False, *[True] * 5], [True] * 6, 0.04, count=4)
+    take_in(contacts, [True] * 6, [True] * 6, 0.04, count=4)
+    take_in(contacts, [False, *[True] * 5], [True] * 6, 0.04, count=4)
     assert contacts.standing[0]
-    contacts.step([False, *[True] * 5], [True] * 6, 0.03)
+    take_in(contacts, [False, *[True] * 5], [True] * 6, 0.03)
     assert not contacts.standing[0]
     # A foot in the air has lost it before.
-    contacts.step([False, *[True] * 5], [False, *[True] * 5], 0.04, count=4)
+    take_in(contacts, [False, *[True] * 5], [False, *[True] * 5], 0.04, count=4)
     assert contacts.lifted[0]
 
 
 def open_after(pitch, *, ticks):
     """The tick in which a switch is found open whose foot tilts the body while another one loses contact; or None."""
     contacts = FootContacts(6)
-    contacts.step([True] * 6, [True] * 6, 0.02)
-    contacts.find_open(STANDING, (0.0, 0.0), 0.02)
+    take_in(contacts, [True] * 6, [True] * 6, 0.02)
+    find_open(contacts, STANDING, (0.0, 0.0), 0.02)
     for tick in range(ticks):
-        contacts.step([False, tick % 4 > 1, *[True] * 4], [True] * 6, 0.02)
-        contacts.find_open(STANDING, (0.0, pitch), 0.02)
+        take_in(contacts, [False, tick % 4 > 1, *[True] * 4], [True] * 6, 0.02)
+        find_open(contacts, STANDING, (0.0, pitch), 0.02)
         if contacts.is_open(0):
             return tick
     return None
@@ -551,15 +552,15 @@ def test_a_foot_that_lifts_the_body_far_is_found_sooner_to_have_an_open_switch()
 def test_a_foot_that_lifts_the_body_off_all_others_that_would_hold_it_has_an_open_switch():
     def found(tilt, readings=(True, True, True, False, False, False), depths=(0.0, 0.0, 0.0, 0.01, 0.03, 0.02)):
         contacts = FootContacts(6)
-        contacts.step([True] * 6, [True] * 6, 0.01)
-        contacts.find_open(STANDING, (0.0, 0.0), 0.01, depths=depths)
+        take_in(contacts, [True] * 6, [True] * 6, 0.01)
+        find_open(contacts, STANDING, (0.0, 0.0), 0.01, depths=depths)
         ticks = 0
         while not any(map(contacts.is_open, range(6))) and ticks < 60:
             ticks += 1
-            contacts.step(readings, [True] * 6, 0.01)
+            take_in(contacts, readings, [True] * 6, 0.01)
             # Hanging feet are high over the ground, and may bear no load by other rules.
             none = STANDING._replace(down=[False] * 6, centre=-0.05 + 0j)
-            contacts.find_open(none, tilt, 0.01, low=[*[True] * 5, False], depths=depths)
+            find_open(contacts, none, tilt, 0.01, low=[*[True] * 5, False], depths=depths)
         return [leg for leg in range(6) if contacts.is_open(leg)], ticks
 
     legs, ticks = found((-0.1, 0.0))
@@ -576,11 +577,11 @@ def test_a_foot_that_lifts_the_body_off_all_others_that_would_hold_it_has_an_ope
 def test_a_foot_that_lifts_off_soon_is_not_lowered_where_others_take_its_load():
     def stands(leaving, ticks, without=5, *, rests=False):
         contacts = FootContacts(2)
-        contacts.step([True, False], [True, False], 0.01)
+        take_in(contacts, [True, False], [True, False], 0.01)
         for _ in range(ticks):
-            contacts.step([True, True], [True, True], 0.01, leaving=leaving)
+            take_in(contacts, [True, True], [True, True], 0.01, leaving=leaving)
         for _ in range(without):
-            contacts.step([True, False], [True, True], 0.01, leaving=leaving, rests=rests)
+            take_in(contacts, [True, False], [True, True], 0.01, leaving=leaving, rests=rests)
         return contacts.standing[1], contacts.supports(1)
 
     assert stands([False, False], 20) == (False, True)
@@ -766,11 +767,11 @@ def test_joints_that_lag_make_contacts_late(ticks):
 def test_a_foot_that_has_barely_touched_is_no_support():
     contacts = FootContacts(2)
     for _ in range(10):
-        contacts.step([False, True], [False, True], 0.01)
-    contacts.step([True, True], [True, True], 0.01)
+        take_in(contacts, [False, True], [False, True], 0.01)
+    take_in(contacts, [True, True], [True, True], 0.01)
     assert contacts.supports(0)
     for _ in range(3):
-        contacts.step([False, False], [True, True], 0.01)
+        take_in(contacts, [False, False], [True, True], 0.01)
     assert not contacts.supports(0)
     assert contacts.supports(1)
 
@@ -780,7 +781,7 @@ def test_a_foot_that_hangs_while_the_robot_rests_looks_for_the_ground_once_it_wa
 
     def seeks_after(ticks, *, rests):
         for _ in range(ticks):
-            contacts.step(readings, [True] * 6, 0.02, leaving=[False] * 6, rests=rests)
+            take_in(contacts, readings, [True] * 6, 0.02, leaving=[False] * 6, rests=rests)
         return not contacts.standing[0] and contacts.seeks(0)
 
     assert seeks_after(200, rests=True)
@@ -793,7 +794,7 @@ def test_a_switch_that_stays_open_is_told_by_a_robot_that_does_not_tip():
         contacts = FootContacts(6)
         for tick, tilt in enumerate(tilts):
             shaken = shaking and tick % 8 > 3
-            contacts.step([on and not (shaken and leg == 5) for leg, on in enumerate(readings)], down, 0.01)
+            take_in(contacts, [on and not (shaken and leg == 5) for leg, on in enumerate(readings)], down, 0.01)
             contacts._balance(STANDING._replace(down=down), tilt, 0.01)
         return [leg for leg in range(6) if contacts.is_open(leg)]
 
@@ -950,12 +951,12 @@ def test_a_robot_that_is_picked_up_or_has_fallen_stops_and_goes_on_once_it_stand
 def test_a_foot_whose_swing_has_waited_looks_for_the_ground_as_long_as_any_other():
     contacts = FootContacts(2)
     for _ in range(300):
-        contacts.step([True, False], [True, False], 0.01)
+        take_in(contacts, [True, False], [True, False], 0.01)
     for _ in range(100):
-        contacts.step([True, False], [True, True], 0.01)
+        take_in(contacts, [True, False], [True, True], 0.01)
         assert contacts.seeks(1)
     for _ in range(100):
-        contacts.step([True, False], [True, True], 0.01)
+        take_in(contacts, [True, False], [True, True], 0.01)
     assert not contacts.seeks(1)
 
 
@@ -963,7 +964,7 @@ def test_the_body_is_lowered_only_for_a_while_for_a_foot_without_ground():
     contacts = FootContacts(6)
     sought = []
     for _ in range(300):
-        contacts.step([True] * 5 + [False], [True] * 6, 0.01)
+        take_in(contacts, [True] * 5 + [False], [True] * 6, 0.01)
         sought.append(contacts.seeks(5))
     assert not sought[0]
     assert 1.3 < 0.01 * sum(sought) < 1.5
@@ -1000,7 +1001,7 @@ def test_a_foot_that_has_just_lifted_off_may_touch_the_ground_still_and_not_agai
     contacts, down = FootContacts(6), [False] + [True] * 5
     phases, touching = np.zeros(6), [True] * 6
     for _ in range(3):
-        contacts.step(touching, [True] * 6, 0.04)
+        take_in(contacts, touching, [True] * 6, 0.04)
     assert contacts.as_planned(touching, [True] * 6, phases)
     phases[0] = 0.1
     assert contacts.as_planned(touching, down, phases)
@@ -1008,7 +1009,7 @@ def test_a_foot_that_has_just_lifted_off_may_touch_the_ground_still_and_not_agai
     # Another foot has lost its contact, and the contact has not ceased by the time at which it has to.
     assert not contacts.as_planned([False, False, *touching[2:]], down, phases)
     assert not contacts.as_planned(touching, down, phases + 0.3)
-    contacts.step(down, down, 0.04)
+    take_in(contacts, down, down, 0.04)
     assert contacts.lifted[0]
     assert contacts.as_planned(down, down, phases)
     # A foot that has left the ground meets an obstacle.

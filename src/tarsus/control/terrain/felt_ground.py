@@ -127,12 +127,11 @@ class FeltGround:
         self.body.see(valid.attitude, state, dt)
         self.ground.see(valid, state)
         # A greater lag of the joints than usual makes contacts late.
+        self.contacts.age = max(valid.contact_age, self._swings.lag - USUAL_LAG)
+        self.contacts.estimated = self._loads.estimated
         leaving, carried = timing.due(state, _LEAVING), self.condition.carried
         rests = self._rests and self.support.held
-        estimated, age = self._loads.estimated, max(valid.contact_age, self._swings.lag - USUAL_LAG)
-        self.contacts.step(
-            measured, down, dt, age=age, count=ticks, leaving=leaving, rests=rests, carried=carried, estimated=estimated
-        )
+        self.contacts.step(measured, down, dt, count=ticks, leaving=leaving, rests=rests, carried=carried)
         self.condition.step([*map(self.contacts.touches, range(len(down)))], valid.attitude, dt, held=self.support.held)
         self.offsets = self._loads.offsets(valid, angles, state, dt, out=self._given[0])
         if self.missing.stranded and all(down):
@@ -238,7 +237,7 @@ class FeltGround:
         missing.sees(self.ground, footholds.rest.tolist())
         waits = self.condition.carried or (self._rests and self.support.held and near == footing.down)
         searches = [] if waits else self._searches(state, footing, stands)
-        missing.lost = contacts.tips(footing, missing.sinks(deeper))
+        missing.lost = contacts.tips(footing, deeper)
         if self._loads.estimated:
             self._tipping.step(footing, depths, tilt, dt)
             missing.lost = self._tipping.leg if missing.lost is None else missing.lost

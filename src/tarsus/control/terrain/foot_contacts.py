@@ -36,6 +36,9 @@ _OPEN_AFTER, _MOST_LIFT = 0.4, 4.0
 _UNHELD, _TIPS = 0.15, 0.012
 # How long that one has had no contact: the switch of one that has just lost it works [s].
 _NEVER = 0.3
+# By how much a robot that does not tip sinks at a foot without contact, at most, besides how much deeper ground may be
+# [m].
+_SINKS = 0.01
 # Fewer feet bear no robot, unless something else holds it.
 _FEWEST = 2
 # Swing phase up to which contact that has not ceased since lift-off tells nothing.
@@ -84,8 +87,9 @@ class FootContacts:
         Whether a swinging foot has been without contact since it lifted off.
     standing : list of bool
         Whether each foot that should stand does, but for the shortest of interruptions.
-    age : float
-        Time since the contacts, with what the joints lag more than usual [s].
+    age, estimated : float, bool
+        Time since the contacts, with what the joints lag more than usual [s]; whether they are estimated by joint
+        angles.
     sunk : list of float
         By how much the body has sunk at each foot by its tilt since that lost its contact [m].
     """
@@ -93,7 +97,7 @@ class FootContacts:
     def __init__(self, legs: int, *, scale: float = 1.0) -> None:
         self.estimator = ContactEstimator(legs)
         self.lifted, self.standing, self.age = [False] * legs, [True] * legs, 0.0
-        self._estimated, self._scale, self._unheld, self._tilt = False, scale, 0.0, (0.0, 0.0)
+        self.estimated, self._scale, self._unheld, self._tilt = False, scale, 0.0, (0.0, 0.0)
         # The last tilt that was measured, and that of each foot when it lost its contact [rad].
         self._last: RollPitch | None = None
         self._tilts, self.sunk = [(0.0, 0.0)] * legs, [0.0] * legs
@@ -105,12 +109,10 @@ class FootContacts:
         down: Sequence[bool],
         dt: float,
         *,
-        age: float = 0.0,
-        count: int = 1,
-        leaving: Sequence[bool] | None = None,
-        rests: bool = False,
-        carried: bool = False,
-        estimated: bool = False,
+        count: int,
+        leaving: Sequence[bool],
+        rests: bool,
+        carried: bool,
     ) -> None:
         """Take in the contacts of one tick, or of some in which they are the same.
 
@@ -120,18 +122,17 @@ class FootContacts:
             Which feet touch the ground, as measured; None where nothing is.
         down : sequence of bool
             Which feet should stand.
-        dt, age, count : float, float, int
-            Time since the last tick [s]; time since the measurement [s]; number of ticks.
-        leaving : sequence of bool, optional
+        dt, count : float, int
+            Time since the last tick [s]; number of ticks.
+        leaving : sequence of bool
             Which feet are to lift off soon: once these have stood, they are not lowered where others take their load.
         rests : bool
             Whether the robot stands still and is held by the feet that bear load: those that have stood stay, then.
-        carried, estimated : bool
-            Whether the robot is in the air, or is being put down; whether contacts are estimated by joint angles.
+        carried : bool
+            Whether the robot is in the air, or is being put down.
         """
-        self.age, self._estimated = age, estimated
         self.estimator.step(readings, dt, count=count)
-        for leg, on in enumerate(down):
+        for leg, (on, leaves) in enumerate(zip(down, leaving, strict=True)):
             if self.estimator.known[leg] and not self.estimator.touching[leg]:
                 # A foot that stands has lost its contact in the last tick: before that, all was as planned.
                 self._without[leg] += dt / count if on and not self._without[leg] else dt
@@ -141,22 +142,14 @@ class FootContacts:
             if not on:
                 self._settled[leg] = 0.0
             self.lifted[leg] = not on and (self.lifted[leg] or self._without[leg] > _LOST)
-        self.standing = [self._bears(leg) for leg in range(len(down))]
-        for leg, leaves in enumerate(leaving or ()):
             stays = rests or (leaves and self._without[leg] < _LEAVES)
-            self.standing[leg] |= stays and self._settled[leg] > _SETTLED
-        # Feet of a robot that rests are hardly lowered, those of one that is carried find nothing: they begin later.
-        for leg, (on, stands) in enumerate(zip(down, self.standing, strict=True)):
-            self._searched[leg] = (self._searched[leg] + dt) * (on and not (rests or carried or stands))
+            self.standing[leg] = self._bears(leg) or (stays and self._settled[leg] > _SETTLED)
+            # Feet of a robot that rests are hardly lowered, those of one that is carried find nothing: they wait.
+            searches = on and not (rests or carried or self.standing[leg])
+            self._searched[leg] = (self._searched[leg] + dt) * searches
 
     def find_open(
-        self,
-        footing: Footing,
-        tilt: RollPitch | None,
-        dt: float,
-        *,
-        low: Sequence[bool] | None = None,
-        depths: Sequence[float] | None = None,
+        self, footing: Footing, tilt: RollPitch | None, dt: float, *, low: list[bool], depths: Sequence[float]
     ) -> None:
         """Find a switch that stays open: a foot that pushes on the ground lifts the body off others.
 
@@ -166,14 +159,14 @@ class FootContacts:
             The feet that should stand.
         tilt, dt : (roll, pitch) or None, float
             Measured, off the attitude to keep [rad], None where it is not; time since the last tick [s].
-        low, depths : sequence of bool, sequence of float, optional
-            Which feet may have lifted the body, and others, by default those that should stand; how far below the
-            expected ground they are [m]: the deepest has lifted it.
+        low, depths : list of bool, sequence of float
+            Which feet may have lifted the body that the others do not hold; how far below the expected ground they are
+            [m]: the deepest has lifted it.
         """
         self._follow(footing.places, tilt)
-        alone = self._lifting_alone(footing._replace(down=list(low or footing.down)), tilt)
+        alone = self._lifting_alone(footing._replace(down=low), tilt)
         if lifts := alone or self._lifting(footing.down, tilt):
-            leg = max(lifts, key=(depths or self._without).__getitem__)
+            leg = max(lifts, key=depths.__getitem__)
             self._evidence[leg] += dt * lifts[leg]
         if tilt is not None:
             self._balance(footing, tilt, dt)
@@ -218,25 +211,23 @@ class FootContacts:
         standing = [places[leg] for leg, on in enumerate(down) if on and leg not in missing]
         if not missing or holds(standing, centre):
             self._unheld = 0.0
-        if not missing or len(standing) < _FEWEST or holds(standing, centre):
-            return
-        longest = max(missing, key=self._without.__getitem__)
-        place = places[longest]
-        if self._unheld <= 0.0 or abs(sunk_at(place, tilt, self._tilt)) > self._scale * _TIPS:
-            self._unheld, self._tilt = 0.0, tilt
-        self._unheld += dt
-        if self._unheld > _UNHELD and self._without[longest] > _NEVER:
-            self._evidence[longest], self.standing[longest] = math.inf, True
+        elif len(standing) >= _FEWEST:
+            longest = max(missing, key=self._without.__getitem__)
+            if self._unheld <= 0.0 or abs(sunk_at(places[longest], tilt, self._tilt)) > self._scale * _TIPS:
+                self._unheld, self._tilt = 0.0, tilt
+            self._unheld += dt
+            if self._unheld > _UNHELD and self._without[longest] > _NEVER:
+                self._evidence[longest], self.standing[longest] = math.inf, True
 
-    def tips(self, footing: Footing, most: float) -> int | None:
+    def tips(self, footing: Footing, deeper: float) -> int | None:
         """Return the leg at whose foot the robot tips, if it does: it sinks there, and the other feet do not hold it.
 
         Parameters
         ----------
-        footing, most : Footing, float
-            The feet that should stand; by how much a body that does not tip sinks at a foot without contact at most
-            [m].
+        footing, deeper : Footing, float
+            The feet that should stand; how much deeper ground may be than expected [m].
         """
+        most = deeper + self._scale * _SINKS
         legs = [leg for leg, on in enumerate(footing.down) if on]
         sinks = [leg for leg in legs if not self._bears(leg) and self.sunk[leg] > most and self.is_known(leg)]
         bears = [footing.places[leg] for leg in legs if self._bears(leg)]
@@ -288,7 +279,7 @@ class FootContacts:
 
     def feels(self, leg: int) -> bool:
         """Return whether a foot touches the side of an obstacle, or rests on it: estimates do not tell."""
-        return self.estimator.touching[leg] and not self._estimated
+        return self.estimator.touching[leg] and not self.estimated
 
     def seeks(self, leg: int) -> bool:
         """Return whether a foot that should stand has no contact, and has not looked for the ground for long."""

@@ -28,9 +28,9 @@ _SLOWS, _STANDS, _SLOWEST = 0.005, 0.02, 0.25
 _HELD_UP, _STEP, _LOW_STEP, _HELD, _LATER = 0.007, 0.5, 0.05, 0.3, 5.0
 # A foot that lifts the body by more stands on ground that is not felt: the robot does not tip towards it [m].
 _LIFTS = 0.008
-# A robot that its feet do not hold tips where it sinks by more than the first. A foot where it is off its attitude by
-# more than the second does not step back: it holds the body, or is in the air by its tilt [m].
-_SINKS, _LEANS = 0.01, 0.02
+# A foot where the robot is off its attitude by more does not step back: it holds the body, or is in the air by its tilt
+# [m].
+_LEANS = 0.02
 # A walk that is slower says why.
 SLOW = 0.85
 # How much deeper than expected ground may be at most where it is sure that there is none [m].
@@ -117,10 +117,6 @@ class MissingGround:
     def tries(self, leg: int, foot: complex) -> bool:
         """Return whether a foot, here in the heading frame, is on its way past an obstacle."""
         return self.obstacles.tries(leg) and self.steps_back(leg, foot)
-
-    def sinks(self, deeper: float) -> float:
-        """Return by how much the body sinks at a foot without contact at most, if the robot does not tip [m]."""
-        return deeper + self._scale * _SINKS
 
     def gives_up(self, leg: int) -> bool:
         """Return whether a foot has found no ground at any place."""

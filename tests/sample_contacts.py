@@ -1,0 +1,12 @@
+"""Contacts of feet, taken in with what is usual besides them."""
+
+
+def take_in(contacts, readings, down, dt, *, count=1, leaving=None, rests=False, carried=False):
+    """Take in contacts of feet none of which lifts off soon, of a robot that walks."""
+    leaving = [False] * len(down) if leaving is None else leaving
+    contacts.step(readings, down, dt, count=count, leaving=leaving, rests=rests, carried=carried)
+
+
+def find_open(contacts, footing, tilt, dt, *, low=None, depths=None):
+    """Find switches that stay open: the feet that should stand may lift the body, the one without contact first."""
+    contacts.find_open(footing, tilt, dt, low=low or footing.down, depths=depths or contacts._without)
