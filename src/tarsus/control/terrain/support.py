@@ -21,7 +21,7 @@ _GRACE = 0.15
 # Least angle by which the centre of mass is inside the support polygon, as seen from it [rad].
 _LEAST_ANGLE = 0.02
 # How far a body sinks at a foot that gives way, at least [m], within which time [s]; how far below the expected ground
-# such a foot is [m]; how long a robot tips at the edge of a hole, not on rough ground [s].
+# such a foot is [m]; for how long a robot has tipped that is at the edge of a hole, at least [s].
 _SINKS, _FOLLOWED, _LOW, _LASTS = 0.015, 0.6, 0.008, 0.2
 HALTING = 0.5
 """Below this pace the robot waits for support."""
