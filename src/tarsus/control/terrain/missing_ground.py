@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from functools import partial
 
-from tarsus.control.limitation import Limitation, LimitationKind
+from tarsus.control.limitation import Cause, Limitation, LimitationKind
 from tarsus.control.limiter.protocol import TwistGrant, TwistRequest, leads_towards
 from tarsus.control.terrain.edge import FORGETS, Edge, direction
 from tarsus.control.terrain.foot_contacts import Search
@@ -82,7 +82,7 @@ class MissingGround:
     def __init__(self, names: Sequence[str], *, scale: float = 1.0) -> None:
         self.obstacles, self.places, self.stranded = Obstacles(scale), dict[int, complex](), list[int]()
         self.pace, self.back, self.tips, self.edge, self.refuses = 1.0, 0j, 0j, 0.0, False
-        self._names, self._scale, self._tries, self._cause = names, scale, [0] * len(names), ("", "")
+        self._names, self._scale, self._tries, self._cause = names, scale, [0] * len(names), Cause("")
         # Whether each foot was only a little below the others as it last stepped back: it is over no hole.
         self._shallow = [False] * len(names)
         self.lost: int | None = None
@@ -96,9 +96,9 @@ class MissingGround:
     @property
     def limitations(self) -> list[Limitation]:
         """Why the walk slows down, unless the command is refused for it."""
-        leg, cause = (self._slows, "the foot looks for the ground") if self._slows else self._cause
+        cause = Cause("the foot looks for the ground", self._slows) if self._slows else self._cause
         waits = not self.refuses and self.pace < SLOW
-        return [Limitation(kind=LimitationKind.GROUND, leg=leg, cause=cause)] if waits else []
+        return [cause.limitation(LimitationKind.GROUND)] if waits else []
 
     def forget(self) -> None:
         """Forget holes and obstacles: the robot is carried elsewhere."""
@@ -126,7 +126,7 @@ class MissingGround:
         """Take note of an edge on which a leg rests: the robot has tipped at its foot, here in the heading frame."""
         if not self._edge.way:
             self._edge.way, self._again = foot / abs(foot), max(self._again, _AGAIN - 1)
-            self._cause = self._names[leg], "the robot tips at the foot"
+            self._cause = Cause("the robot tips at the foot", self._names[leg])
 
     def step(
         self,
@@ -173,7 +173,7 @@ class MissingGround:
         # A robot none of whose feet stands is being lifted.
         held = not (searches and standing) or holds(standing, centre + well)
         for search in searches:
-            leg, depth, falls, lasts, _, raised, leans = search
+            leg, depth, falls, lasts, sunk, raised, leans = search
             way = self._edge.seen_from(feet[leg], rest[leg])
             slowest = 0.0 if falls else _SLOWEST
             pace = max(1 - (depth - slows) / (deep - slows), slowest)
@@ -185,7 +185,9 @@ class MissingGround:
             hangs = not falls and (depth > deep or not lasts) if leg in self.places else long
             missing = depth - max(raised, 0.0) > _DEEP * height + _ROUGHLY_DEEP * deeper or hangs
             missing &= abs(leans) < max(self._scale * _LEANS, deeper)
-            if _tips(search, deep, held=held, lifts=self._scale * _LIFTS):
+            # The other feet hold a robot that does not sink or lean far.
+            unheld = not held and sunk > -self._scale * _LIFTS and depth + max(sunk, 0.0) > deep
+            if unheld or sunk > deep or min(leans, depth) > deep:
                 self._tip(way)
             if missing and not (self.steps_back(leg, feet[leg]) or self.gives_up(leg)):
                 self.edge = depth if held_up else self.edge
@@ -233,7 +235,7 @@ class MissingGround:
         # Ground that is only a little lower, or rough, may be reached with other footholds.
         reached, shallow = f"no ground within {1e3 * depth:.0f} mm below the other feet", depth < self._scale * _SHALLOW
         self._shallow[leg] = shallow
-        self._cause = self._names[leg], "the ground is lower than the leg reaches" if shallow else reached
+        self._cause = Cause("the ground is lower than the leg reaches" if shallow else reached, self._names[leg])
         self._again += _AGAIN if sure and not shallow else 0
 
     def _tip(self, way: complex) -> None:
@@ -257,7 +259,8 @@ class MissingGround:
         """
         start, self.places[leg] = self.obstacles.stopped(leg, foot, goal, bow)
         ends = not self.obstacles.tries(leg)
-        self._cause = self._names[leg], "an obstacle stops the foot" + ends * " that is higher than the leg steps"
+        higher = " that is higher than the leg steps" if ends else ""
+        self._cause = Cause(f"an obstacle stops the foot{higher}", self._names[leg])
         if ends:
             self._edge.way, self._again = self.obstacles.found, max(self._again, _AGAIN - 1)
         return start - foot
@@ -267,7 +270,7 @@ class MissingGround:
         self._over = any(leads_towards(at, self._edge.way) and ground.is_hole(at) for at in rest)
         for leg, place in ground.holes.items():
             self._edge.way = direction(place - rest[leg], rest[leg])
-            self._cause, self._again = (self._names[leg], "no ground within reach at its next foothold"), _AGAIN
+            self._cause, self._again = Cause("no ground within reach at its next foothold", self._names[leg]), _AGAIN
 
     def held(self, shift: complex) -> complex:
         """Return the part of a velocity of all feet by which the body would go on where it may not [m/s]."""
@@ -280,17 +283,10 @@ class MissingGround:
         self.refuses = leads_towards(velocity, self._edge.way) or (self._stops and self._over)
         self.stranded = [leg for leg in self.places if self.gives_up(leg) and any(request.twist) and not self.refuses]
         if self.refuses:
-            name, cause = self._cause
-            return grant.at_most(0.0, Limitation(kind=LimitationKind.GROUND, leg=name, cause=cause))
+            return grant.at_most(0.0, self._cause.limitation(LimitationKind.GROUND))
         for leg in self.obstacles.led_away(partial(leads_towards, velocity)):
             self._drop(leg)
         if any(request.twist) and not self.places and self._edge.way:
             self._edge.leave(self.obstacles.found)
         # Where there was an edge, the ground may be missing once more.
         return grant.at_most(1.0) if self._again and self._edge.since < _CAREFUL else grant
-
-
-def _tips(search: Search, deep: float, *, held: bool, lifts: float) -> bool:
-    """Return whether a robot tips towards a foot without contact; held by the others, only if it sinks or leans far."""
-    unheld = not held and search.sunk > -lifts and search.depth + max(search.sunk, 0.0) > deep
-    return search.sunk > deep or unheld or min(search.leans, search.depth) > deep
