@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import cmath
 import math
-from collections.abc import Callable
-from typing import TYPE_CHECKING, Any
+from collections.abc import Callable, Sequence
+from typing import Any
 
 from tarsus.control.sensing.swing_monitor import USUAL_LAG
 from tarsus.control.terrain.body_motion import BodyMotion
@@ -13,20 +13,15 @@ from tarsus.control.terrain.foot_contacts import FootContacts
 from tarsus.control.terrain.missing_ground import MissingGround
 from tarsus.control.terrain.reach import Reach
 from tarsus.control.terrain.support import HALTING, Footing, sunk_at
-from tarsus.control.walk.felt_feet import FeltFoot
+from tarsus.control.walk.felt_feet import ROUNDING, FeltFoot
 from tarsus.control.walk.state import GaitState
 from tarsus.control.walk.step_timing import StepTiming
 from tarsus.control.walk.stepper import land
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
 
 __all__ = ["met_ground", "not_sunk", "put_down"]
 
 # Swing phases from which on contact is a collision, and from which on it is the ground.
 _CLEAR, _LANDING = 0.12, 0.55
-# Rounding of a height [m].
-_ROUNDING = 1e-9
 # How far a foot has risen that meets an obstacle [m].
 _LIFTED = 0.01
 # After a collision: how much higher the foot rises [m], in which time [s], and how far it is drawn back [m].
@@ -74,9 +69,8 @@ def met_ground(
                 state = _trying_again(state, leg, missing, reach, state, error(leg))
             continue
         leaves = missing.obstacles.leaves(state.in_heading(complex(state.foothold[leg])) - places[leg])
-        if not leaves and _collides_again(
-            state, leg, side=contacts.feels(leg) and contacts.lifted[leg], stopped=leg in stopped, scale=reach.scale
-        ):
+        side = contacts.feels(leg) and contacts.lifted[leg]
+        if not leaves and _collides_again(state, leg, side=side, stopped=leg in stopped, scale=reach.scale):
             state = _trying_again(state, leg, missing, reach, _landed(state, leg, timing, pace), error(leg))
             landed.append(leg)
         elif phase > _LANDING or (pace < HALTING and _stands_below(state, leg, contacts, scale=reach.scale)):
@@ -89,7 +83,7 @@ def met_ground(
             # It touched the ground a moment ago, when it was higher.
             over = float(state.ground_height[leg]) - elevation - tells * contacts.age * min(foot.speed, 0.0)
             expected = body.ground.at(places[leg])
-            if tells or over <= expected + _ROUNDING:
+            if tells or over <= expected + ROUNDING:
                 if tells:
                     # A body that sinks at the foot by its tilt meets the ground sooner.
                     off, sunk = over - expected, max(contacts.sunk[leg], 0.0)
@@ -98,7 +92,7 @@ def met_ground(
                 landed.append(leg)
         elif (meets or leg in stopped) and not leaves and _collides(state, leg, contacts, scale=reach.scale):
             body.roughness.collided()
-            state = _rising_again(state, leg, _highest(state, leg, reach), timing, error(leg), scale=reach.scale)
+            state = _rising_again(state, leg, reach, timing, error(leg))
     return state, landed
 
 
@@ -151,40 +145,31 @@ def _stands_below(state: GaitState, leg: int, contacts: FootContacts, *, scale: 
 
 def _collides_again(state: GaitState, leg: int, *, side: bool, stopped: bool, scale: float) -> bool:
     """Return whether a foot that has risen after a collision has not got past the obstacle."""
-    start, foot = state.felt[leg].drawn_back, complex(state.foot[leg])
-    if start is None or state.swing_phase[leg] <= state.felt[leg].top_phase:
-        return False
+    start, foot, goal = state.felt[leg].drawn_back, complex(state.foot[leg]), complex(state.foothold[leg])
+    rises = state.swing_phase[leg] <= state.felt[leg].top_phase
     # A foot that steps in place meets no obstacle on its way.
-    if abs(state.foothold[leg] - start) < scale * _SHORT:
+    if start is None or rises or abs(goal - start) < scale * _SHORT:
         return False
     # A foot that does not go down meets no ground.
     falls = state.felt[leg].speed < 0.0
-    short = abs(state.foothold[leg] - foot) < scale * _SHORT
+    short = abs(goal - foot) < scale * _SHORT
     past = abs(foot - start) > scale * (_DRAWN_BACK + _PAST)
     return not (falls and short) and ((past and stopped) or (side and not (past and falls)))
 
 
-def _rising_again(
-    state: GaitState, leg: int, highest: float, timing: StepTiming, error: complex, *, scale: float
-) -> GaitState:
+def _rising_again(state: GaitState, leg: int, reach: Reach, timing: StepTiming, error: complex) -> GaitState:
     """Return the state with a foot that lags behind its command: it draws back from an obstacle and rises higher."""
-    height, foot = float(state.ground_height[leg]), complex(state.foot[leg])
-    top = state.felt[leg].top
-    way = complex(state.foothold[leg]) - foot
+    height, foot, foothold = float(state.ground_height[leg]), complex(state.foot[leg]), complex(state.foothold[leg])
+    highest = state.elevation + reach.highest_on_way(leg, state.in_heading(foot), state.in_heading(foothold))[0]
+    top, way = state.felt[leg].top, foothold - foot
     felt = _with(
         state.felt,
         leg,
-        top=min((height if math.isnan(top) else max(top, height)) + scale * _HIGHER, max(highest, height)),
+        top=min((height if math.isnan(top) else max(top, height)) + reach.scale * _HIGHER, max(highest, height)),
         top_phase=min(float(state.swing_phase[leg]) + _RISING / timing.swing_time, 1.0),
-        drawn_back=foot + error - scale * _DRAWN_BACK * way / max(abs(way), 1e-9),
+        drawn_back=foot + error - reach.scale * _DRAWN_BACK * way / max(abs(way), 1e-9),
     )
     return state._replace(felt=felt)
-
-
-def _highest(state: GaitState, leg: int, reach: Reach) -> float:
-    """Return the greatest height in G of a foot on its way to its foothold [m]."""
-    start, end = (state.in_heading(complex(place)) for place in (state.foot[leg], state.foothold[leg]))
-    return state.elevation + reach.highest_on_way(leg, start, end)[0]
 
 
 def _trying_again(

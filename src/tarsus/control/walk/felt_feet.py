@@ -6,7 +6,10 @@ import math
 from collections.abc import Mapping
 from typing import NamedTuple
 
-__all__ = ["FeltFoot", "FeltInputs", "GroundUnder", "travel_share"]
+__all__ = ["ROUNDING", "FeltFoot", "FeltInputs", "GroundUnder", "travel_share"]
+
+ROUNDING = 1e-9
+"""Differences of heights below this are rounding [m]."""
 
 # Fraction of the swing in which a foot travels, up to half the longest stroke and with the longest one; at least.
 _SLOW_TRAVEL, _FAST_TRAVEL, _LEAST_TRAVEL = 0.75, 0.92, 0.5

@@ -4,16 +4,20 @@ from __future__ import annotations
 
 import cmath
 import math
+from typing import TypeAlias
 
 import numpy as np
 
-from tarsus.control.walk.felt_feet import FeltFoot, FeltInputs, GroundUnder
+from tarsus.control.walk.felt_feet import ROUNDING, FeltFoot, FeltInputs, GroundUnder
 from tarsus.control.walk.state import GaitState, StepInputs
 from tarsus.gait.swing_trajectory import quintic
 
 __all__ = ["moved_vertically"]
 
 _STILL = FeltFoot()
+
+# Of a foot in the air: swing phase, duration of the swing [s], height at lift-off and place in G [m].
+_Swing: TypeAlias = tuple[float, float, float, complex]
 
 # Swing phase at which a foot is at its top, and on rough ground.
 _TOP_PHASE, _ROUGH_TOP_PHASE = 0.42, 0.45
@@ -49,8 +53,6 @@ _NEARS, _PRESSED, _PRESSED_DEEP = 0.007, 0.004, 0.4
 _OVER = 0.015
 # How far from where it was drawn back to a foot goes down again [m].
 _PAST = 0.05
-# Rounding of a height [m].
-_ROUNDING = 1e-9
 # Speeds of a foot that steps back, up and back [m/s].
 _RISING, _BACK = 0.3, 0.4
 # Greatest changes of speed: of feet in the air, of the body, of feet on the ground, and of their slide [m/s^2].
@@ -133,9 +135,7 @@ def _searching(
         place = place if under.place is None else under.place
         least = felt.scale * _SEARCHING
         fastest = felt.lowering if under.place is None else max(felt.lowering, least)
-        slowest = least
-        if math.isnan(foot.top) and sum(felt.stands) >= _OTHERS:
-            slowest = _losing(over, felt)
+        slowest = _losing(over, felt) if math.isnan(foot.top) and sum(felt.stands) >= _OTHERS else least
         wanted -= min(max(slowest, over / _SEARCH_TIME), fastest, _fastest_contact(over, felt))
         after = _towards(speed, wanted, _FOOT_ACCELERATION * dt)
         height, after = _no_lower(height + (speed + after) / 2 * dt, after, height, under.lowest)
@@ -158,12 +158,7 @@ def _losing(over: float, felt: FeltInputs) -> float:
 
 
 def _swinging(
-    height: float,
-    foot: FeltFoot,
-    under: GroundUnder,
-    felt: FeltInputs,
-    dt: float,
-    swing: tuple[float, float, float, complex],
+    height: float, foot: FeltFoot, under: GroundUnder, felt: FeltInputs, dt: float, swing: _Swing
 ) -> tuple[float, FeltFoot]:
     """Return the height of a foot in the air, and its state: it rises to its top, then goes down."""
     phase, swing_time, lifted_at, place = swing
@@ -180,7 +175,7 @@ def _swinging(
         over = max(start, under.expected, under.way) + felt.swing_height
         highest = max(under.highest, under.bowed)
         top = max(min(over, highest, fits), height)
-        bow = under.bow * max(min(top, highest) - under.highest, 0.0) / max(highest - under.highest, _ROUNDING)
+        bow = under.bow * max(min(top, highest) - under.highest, 0.0) / max(highest - under.highest, ROUNDING)
         if under.steep and 0.0 < phase < _RISING_FIRST:
             drawn_back, top_phase = place, _STEEP_TOP_PHASE
     if phase < top_phase:
