@@ -163,7 +163,9 @@ class FeltGround:
         self._given = excluded, standing
         self._rests = self._still and not (self.missing.refuses or self.missing.places)
         if kept and self._given == before and (standing or not self._next_lift.is_due(timing, state, dt)):
-            self._inputs = kept = kept.moved_by(self.body.rates.climb, self.body.rates.turn)
+            climb, turn = self.body.rates
+            if turn is not kept.turn or climb != kept.climb:
+                self._inputs = kept = kept._replace(climb=climb, turn=turn)
             return kept
         due = None if standing else timing.due(state, dt)
         dt, self._idle = self._idle, 0.0

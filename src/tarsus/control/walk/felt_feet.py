@@ -138,17 +138,6 @@ class FeltInputs(NamedTuple):
     exact: bool = False
     redundant: bool = False
 
-    def moved_by(self, climb: float, turn: tuple[float, float]) -> FeltInputs:
-        """Return the inputs for another motion of the body; the same ones for the same motion.
-
-        Parameters
-        ----------
-        climb, turn : float, tuple of float
-            As the attributes [m/s], [rad/s].
-        """
-        same = turn is self.turn and climb == self.climb
-        return self if same else self._replace(climb=climb, turn=turn)
-
 
 def travel_share(far: float, late: float) -> float:
     """Return the fraction of its swing in which a foot travels.
