@@ -272,10 +272,9 @@ class FeltGround:
         reach, rests = self.body.reach, self._rests and self.support.held
         lowest = max(reach.lowest[leg], self.ground.at(goal) - _NEAR) if rests else reach.lowest[leg]
         straight, bowed = reach.highest_on_way(leg, place, goal)
-        clears, back = not self._loads.estimated, self.missing.places.get(leg)
         room = (lowest if searches else None, straight)
-        found = self.ground.under(place, goal, state.elevation, room, clears=clears)
-        back = None if back is None else state.origin + back * heading
+        found = self.ground.under(place, goal, state.elevation, room, clears=not self._loads.estimated)
+        back = state.origin + self.missing.places[leg] * heading if leg in self.missing.places else None
         return found._replace(bow=heading * reach.bows[leg], bowed=state.elevation + bowed, place=back)
 
     def _decide_on_support(self, footing: Footing, due: list[bool] | None, dt: float, swing_time: float) -> None:
@@ -291,10 +290,9 @@ class FeltGround:
     @property
     def limitations(self) -> tuple[Limitation, ...]:
         """Readings that are rejected, and what the ground does not allow."""
-        found = (
-            rejections(self.measured) + self.condition.limitations + self.body.limitations + self.missing.limitations
-        )
-        explained = self.condition.in_air or self.missing.refuses or self.missing.limitations
+        missing = self.missing.limitations
+        found = rejections(self.measured) + self.condition.limitations + self.body.limitations + missing
+        explained = self.condition.in_air or self.missing.refuses or missing
         if self.support.pace < SLOW and not explained:
             slope, unheld = self.body.slope, "the feet on the ground do not hold the robot"
             found.append(Limitation(kind=LimitationKind.GROUND, cause=slope.reason if slope.refuses else unheld))
