@@ -421,11 +421,11 @@ def test_compliant_feet_yield_to_measured_forces_or_else_to_joint_torques():
     angles, state = controller.angles, controller._tick.gait
     pressed = ValidReadings(forces=((0.0, 0.0, 50.0), *((0.0, 0.0, 0.1),) * 5))
     driven = ValidReadings(torques=tuple((0.0, 1.0, 0.5) for _ in range(6)))
-    assert FootLoads(STRIDER, None).offsets(pressed, angles, state, 0.01) is None
+    assert FootLoads(STRIDER, None).offsets(pressed, angles, state, 0.01, out=[]) is None
 
     def offsets(readings):
         soft = FootLoads(STRIDER, Admittance(mass=1.0, damping=400.0, stiffness=400.0))
-        return soft.offsets(readings, angles, state, 0.01)
+        return soft.offsets(readings, angles, state, 0.01, out=[])
 
     np.testing.assert_array_equal(offsets(ValidReadings()), np.zeros(6))
     assert offsets(pressed)[0] > 0 > offsets(pressed)[1:].max()

@@ -88,13 +88,7 @@ class FootLoads:
         return found
 
     def offsets(
-        self,
-        valid: ValidReadings,
-        angles: Float[np.ndarray, "legs 3"],
-        state: GaitState,
-        dt: float,
-        *,
-        out: Sequence[int] = (),
+        self, valid: ValidReadings, angles: Float[np.ndarray, "legs 3"], state: GaitState, dt: float, *, out: list[int]
     ) -> Float[np.ndarray, "legs"] | None:
         """Return the upward offsets of compliant feet by measured forces, or by joint torques [m]; None of stiff ones.
 
@@ -104,7 +98,7 @@ class FootLoads:
             The readings.
         angles : array, shape (legs, 3)
             Joint angles [rad].
-        state, dt, out : GaitState, float, sequence of int
+        state, dt, out : GaitState, float, list of int
             The gait state; length of the tick [s]; legs that are taken out of the gait: they bear no load.
         """
         if self._filter is None:

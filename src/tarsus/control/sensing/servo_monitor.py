@@ -94,13 +94,12 @@ class ServoMonitor:
         self._stall_torque, self.failed = stall_torque, FailedJoints(len(stall_torque))
         # Durations and commands of the last ticks, and the sum of the durations [s].
         self._commands: deque[tuple[float, Float[np.ndarray, "legs 3"]]] = deque()
-        self._span = 0.0
+        self._span = self._time = self._since = 0.0
         self._evidence: Float[np.ndarray, "2 legs 3"] | None = None
         # Legs that have been found, and those whose feet touched as joints were last looked at.
         self._found, self._touched = set[int](), set[int]()
         # What was measured and commanded, since joints were last looked at for whether they are stuck.
         self._compared: list[tuple[Float[np.ndarray, "legs 3"], Float[np.ndarray, "legs 3"]]] = []
-        self._time, self._since = 0.0, 0.0
         self._last: Float[np.ndarray, "legs 3"] | None = None
 
     def step(self, commanded: Float[np.ndarray, "legs 3"], valid: ValidReadings, dt: float) -> None:
@@ -122,18 +121,12 @@ class ServoMonitor:
             return
         self._since += dt
         if self._since >= _PERIOD:
-            measured = np.array([(math.nan,) * 3 if leg is None else leg for leg in valid.joint_angles])
-            self._look(commanded, measured, valid, self._since)
+            self._look(commanded, valid, self._since)
             self._since = 0.0
 
-    def _look(
-        self,
-        commanded: Float[np.ndarray, "legs 3"],
-        measured: Float[np.ndarray, "legs 3"],
-        valid: ValidReadings,
-        dt: float,
-    ) -> None:
+    def _look(self, commanded: Float[np.ndarray, "legs 3"], valid: ValidReadings, dt: float) -> None:
         """Change the evidence against joints by their errors; those of legs that are not measured are NaN."""
+        measured = np.array([leg or (math.nan,) * 3 for leg in valid.joint_angles or ()])
         last, self._last = measured if self._last is None else self._last, measured
         touched, self._touched = self._touched, {leg for leg, touches in enumerate(valid.contacts or ()) if touches}
         # A foot that presses on moving ground loses touch for a moment, in which its servo is stalled as before.
@@ -174,10 +167,8 @@ class ServoMonitor:
 
     def _torque(self, valid: ValidReadings, leg: int, joint: int) -> float:
         """Return the measured torque of a joint over the stall torque of its servo; NaN where it is unknown."""
-        of_leg = None if valid.torques is None else valid.torques[leg]
-        if of_leg is None:
-            return math.nan
-        return abs(of_leg[joint]) / float(self._stall_torque[leg, joint])
+        of_leg = valid.torques[leg] if valid.torques else None
+        return abs(of_leg[joint]) / float(self._stall_torque[leg, joint]) if of_leg else math.nan
 
     def _stuck(
         self, measured: Float[np.ndarray, "legs 3"], commanded: Float[np.ndarray, "legs 3"], dt: float

@@ -52,8 +52,7 @@ class SwingMonitor:
         valid, dt, down : ValidReadings, float, sequence of bool
             The readings; time since the last tick [s]; which feet should stand.
         """
-        commands = self._commanded
-        stopped: list[int] = []
+        commands, stopped = self._commanded, list[int]()
         commands.appendleft((dt, commanded))
         window, since = max(time for time, _ in commands), [*accumulate(time for time, _ in commands)]
         longest = _LONGEST_LAG + window + dt + _ROUNDING
