@@ -94,7 +94,7 @@ def test_without_torques_or_masses_and_without_a_way_nothing_is_found():
     assert pushed(WEIGHT, velocity=0j).push == 0.0
     massless = StoppedBody(STRIDER.replace(link_mass=None, link_com=None, body_mass=None))
     measured = ValidReadings(joint_angles=ANGLES.tolist(), torques=[(9.0, 0.0, 0.0)] * 6)
-    massless.step(measured, [0, 1, 2, 3], 0.1j, DT)
+    massless.step(measured, [0, 1, 2, 3], 0.1j, DT, yaw=0.0)
     assert massless.push == 0.0
 
 

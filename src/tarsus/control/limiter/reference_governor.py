@@ -69,6 +69,5 @@ class GovernorLimiter:
 
     def _is_behind(self, state: GaitState) -> bool:
         """Return whether a foot that stands is outside its polygon: one that has landed short of its foothold."""
-        places = state.in_heading(state.foot)
-        along = (NORMALS_CONJUGATE * places[:, None]).real
+        along = (NORMALS_CONJUGATE * state.in_heading(state.foot)[:, None]).real
         return bool((along > self._transitions.bounds)[state.down].any())

@@ -45,9 +45,7 @@ class StoppedBody:
         self._mounts: list[complex] = (robot.geometry.mount_x + 1j * robot.geometry.mount_y).tolist()
         self._solver = ScalarSolver(robot)
 
-    def step(
-        self, measured: ValidReadings, bears: Sequence[int], velocity: complex, dt: float, *, yaw: float = 0.0
-    ) -> None:
+    def step(self, measured: ValidReadings, bears: Sequence[int], velocity: complex, dt: float, *, yaw: float) -> None:
         """Take in joint angles and torques.
 
         Parameters

@@ -139,17 +139,14 @@ class FootPrediction(NamedTuple):
         """
         unchanged = command.tolist() == current.tolist()
         targets = command[None] if unchanged else current + _FRACTIONS * (command - current)
-        last = _last_feasible(self.excess(targets, bounds))
-        if last is not None:
+        if (last := _last_feasible(self.excess(targets, bounds))) is not None:
             return command if last == len(targets) - 1 else np.asarray(targets[last])
         reduced = _REDUCTIONS * current
         over = self.excess(reduced, bounds)
-        last = _last_feasible(over)
-        if last is not None:
+        if (last := _last_feasible(over)) is not None:
             return np.asarray(reduced[last])
         # A foot that is outside already, as one that is put down before an obstacle, may not get farther out.
-        last = _last_feasible(self.excess(targets, bounds + over[0, 0].clip(0.0)))
-        if last is not None:
+        if (last := _last_feasible(self.excess(targets, bounds + over[0, 0].clip(0.0)))) is not None:
             return np.asarray(targets[last])
         # One that gets outside even if the walk stops may get a little farther out, as it lifts off soon.
         return np.asarray(reduced[_last_feasible(over - over[0].max(axis=0).clip(0.0) - _SLACK) or 0])

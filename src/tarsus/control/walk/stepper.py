@@ -97,9 +97,8 @@ def _lift(
     lifts = np.array(due)
     lifts[list(inputs.excluded)] = False
     if final is not None:
-        away = np.abs(state.foot - final) > stance_tolerance(
-            state, scale=1.0 if inputs.felt is None else inputs.felt.scale
-        )
+        scale = 1.0 if inputs.felt is None else inputs.felt.scale
+        away = np.abs(state.foot - final) > stance_tolerance(state, scale=scale)
         away[list(inputs.unstepped)] = True
         # A leg that returns to the gait is over its foothold at best.
         above = state.ground_height > POSITION_TOLERANCE if inputs.felt is None else ~np.array(inputs.felt.steps)
