@@ -11,7 +11,7 @@ import tarsus
 from gait_robots import preset
 from tarsus.control.readings import SensorReadings, ValidReadings
 from tarsus.control.sensing.validation import ReadingsValidator
-from tarsus.control.terrain.ground_contact import not_sunk
+from tarsus.control.terrain.ground_contact import not_sunk, supporting
 from tarsus.control.terrain.ground_map import GroundMap
 from tarsus.control.terrain.support import Footing
 from tarsus.control.walk.state import GaitState
@@ -332,3 +332,33 @@ def test_a_simulated_camera_sees_the_terrain_around_the_body():
     assert found[0] is found[1]
     assert found[1] is not found[-1]
     np.testing.assert_allclose(found[-1].heights, np.where(X > 0.33, 0.05, 0.0), atol=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("leg", "deeper", "depth", "sinks", "walks", "supports"),
+    [
+        ("rear left", 0.03, 0.02, 0.0, True, True),
+        ("middle left", 0.03, 0.02, 0.0, True, True),
+        ("front left", 0.03, 0.02, 0.0, True, False),
+        ("rear left", 0.03, -0.02, 0.0, True, True),
+        ("rear left", 0.03, 0.04, 0.0, True, False),
+        ("rear left", 0.03, 0.02, 0.02, True, False),
+        ("rear left", 0.03, 0.02, -0.02, True, True),
+        ("rear left", 0.03, 0.02, 0.0, False, False),
+        ("rear left", 0.0, 0.02, 0.0, True, False),
+        ("rear left", 0.0, -0.02, 0.0, True, False),
+    ],
+)
+def test_on_rough_ground_feet_that_follow_others_are_support_unless_they_are_deep_or_the_body_sinks_there(
+    leg, deeper, depth, sinks, walks, supports
+):
+    (state, reach, _), known, leg = stepping(), GroundMap(), STRIDER.leg_names.index(leg)
+    state = state._replace(ground_height=np.where(np.arange(6) == leg, -depth, 0.0))
+    places = [complex(foot) - state.origin for foot in state.foot]
+    standing = [on != leg for on in range(6)]
+    known.step([(place, 0.0) for on, place in zip(standing, places, strict=True) if on], None, state, 0.03, drift=0j)
+    rough = body(known, reach, [True] * 6, (-sinks / places[leg].imag, 0.0))
+    rough.contacts.supports, rough.roughness.deeper = standing.__getitem__, deeper
+    down = [True] * 5 + [False]
+    expected = [on and (supports if each == leg else True) for each, on in enumerate(down)]
+    assert supporting(state, rough, footing(state, places)._replace(down=down), walks=walks) == expected

@@ -16,7 +16,7 @@ from tarsus.control.sensing.swing_monitor import USUAL_LAG, SwingMonitor
 from tarsus.control.sensing.validation import ReadingsValidator, rejections
 from tarsus.control.terrain.body_motion import BodyMotion
 from tarsus.control.terrain.foot_contacts import Search
-from tarsus.control.terrain.ground_contact import met_ground, not_sunk, put_down
+from tarsus.control.terrain.ground_contact import met_ground, not_sunk, put_down, supporting
 from tarsus.control.terrain.missing_ground import SLOW, MissingGround
 from tarsus.control.terrain.support import Footing, Support, Tipping, along_gravity, off_commanded, sunk_at
 from tarsus.control.transition.executor import TransitionExecutor
@@ -181,7 +181,8 @@ class FeltGround:
             self.body.step(tick, self.measured, footing._replace(down=free), transitions, pace=self.support.pace)
             self.ground.choose(state, self.body.reach, footholds)
         stands = self._find_ground(state, footing, footholds, dt)
-        self._decide_on_support(footing, due, dt, timing.swing_time)
+        bearing = footing._replace(down=supporting(state, self.body, footing, walks=not standing))
+        self._decide_on_support(bearing, due, dt, timing.swing_time)
         self.body.roughness.decay(0.0 if standing else dt * timing.frequency)
         under: list[GroundUnder | None] = [None] * len(steps)
         for leg, (place, on) in enumerate(zip(footing.places, footing.down, strict=True)):
@@ -280,8 +281,7 @@ class FeltGround:
     def _decide_on_support(self, footing: Footing, due: list[bool] | None, dt: float, swing_time: float) -> None:
         """Decide whether feet may lift off, and at which pace the walk goes on; None is due while the robot stands."""
         missing, lifts, fallen = self.missing, any(due or ()), self.condition.fallen
-        bears = [self.contacts.supports(leg) and leg not in missing.places for leg in range(len(footing.down))]
-        legs = [leg for leg, on in enumerate(footing.down) if on and not (due and due[leg]) and bears[leg]]
+        legs = [leg for leg, on in enumerate(footing.down) if on and not (leg in missing.places or (due and due[leg]))]
         stays = self.support.holds(legs, footing, anew=not self.body.since)
         held = due is None or (stays and not (lifts and any((self.body.slope.refuses, missing.refuses, missing.tips))))
         stays, lifts = held and not fallen, lifts and not fallen

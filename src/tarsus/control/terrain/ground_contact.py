@@ -18,7 +18,7 @@ from tarsus.control.walk.state import GaitState
 from tarsus.control.walk.step_timing import StepTiming
 from tarsus.control.walk.stepper import land
 
-__all__ = ["met_ground", "not_sunk", "put_down"]
+__all__ = ["met_ground", "not_sunk", "put_down", "supporting"]
 
 # Swing phases from which on contact is a collision, and from which on it is the ground.
 _CLEAR, _LANDING = 0.12, 0.55
@@ -34,6 +34,9 @@ _SHORT, _PAST, _DRAWS_BACK = 0.02, 0.03, 1.0
 _HANGS, _HANGS_LOW = 0.05, 0.9
 # Nor does one without contact that is this far over the expected ground, as before a wall: it is still to go down [m].
 _HIGH = 0.03
+# A foot without contact is no support where the body is lower than in its attitude by more, nor one whose rest foothold
+# is farther ahead: others have not been there [m].
+_SINKS, _AHEAD = 0.01, 0.03
 
 
 def met_ground(
@@ -218,3 +221,27 @@ def not_sunk(state: GaitState, body: BodyMotion, footing: Footing, *, tips: bool
     if deep:
         return none, none
     return low if low == footing.down else none, low
+
+
+def supporting(state: GaitState, body: BodyMotion, footing: Footing, *, walks: bool) -> list[bool]:
+    """Return which feet that should stand count as support: on rough ground also those that will bear load soon.
+
+    There, a foot that follows others looks for ground that is no deeper than rough ground may be, and finds it while
+    others swing; not where the body sinks at the foot.
+
+    Parameters
+    ----------
+    state, body : GaitState, BodyMotion
+        The gait state; contacts, expected ground, reach, roughness and tilt.
+    footing, walks : Footing, bool
+        The feet that should stand; whether the robot walks: one that stands waits until its feet bear load.
+    """
+    reach, deeper, found = body.reach, body.roughness.deeper * walks, list[bool]()
+    velocity = complex(*state.twist.value[:2].tolist())
+    follows = ((reach.rest * velocity.conjugate()).real < reach.scale * _AHEAD * abs(velocity)).tolist()
+    for leg, over in enumerate((state.ground_height - state.elevation).tolist()):
+        place = footing.places[leg]
+        near = body.ground.at(place) - over < deeper and sunk_at(place, body.off) < reach.scale * _SINKS
+        soon = deeper > 0.0 and follows[leg] and near
+        found.append(footing.down[leg] and (soon or body.contacts.supports(leg)))
+    return found
