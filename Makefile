@@ -72,6 +72,7 @@ truth: $(VENV)/.dev
 	$(BIN)/python docs/faults.py
 	$(BIN)/python docs/rough_ground.py
 	$(BIN)/python docs/gaits_on_ground.py
+	$(BIN)/python docs/other_presets.py
 	$(BIN)/python docs/seen_ground.py
 	$(BIN)/python docs/cross_slopes.py
 	$(BIN)/python docs/edges.py
