@@ -126,7 +126,7 @@ def walked(ground, *, seconds=10.0, **adaptation):
 @pytest.mark.no_cover
 def test_over_blocks_more_of_the_way_is_made_and_on_flat_ground_nothing_changes():
     more = 0.0
-    for seed in (1, 2):
+    for seed in (3, 4):
         blocks = terrain.Blocks(rise=0.1, size=0.15, clear=0.25, seed=seed)
         (slower, steady), (way, fastest) = walked(blocks, catch_up=1.0), walked(blocks)
         assert steady <= 1 + 1e-6 < fastest <= 1.5 + 1e-6
