@@ -261,14 +261,14 @@ def test_ground_may_be_deeper_at_once_and_more_so_where_roughness_lasts():
 
 def test_an_edge_raises_swings_and_the_body_but_allows_for_no_deeper_ground():
     roughness = Roughness(tarsus.GroundAdaptation())
-    roughness.landed(0.048, at_edge=True)
+    roughness.at_edge(0.048)
     assert roughness.swing_rise == roughness.body_rise == pytest.approx(0.04)
     assert roughness.deeper == 0.0
     roughness.decay(4.0)
     assert roughness.value == pytest.approx(0.04 / math.e)
     # What feet have met before still counts.
     roughness.landed(0.018)
-    roughness.landed(0.1, at_edge=True)
+    roughness.at_edge(0.1)
     assert roughness.deeper == pytest.approx(0.025)
 
 

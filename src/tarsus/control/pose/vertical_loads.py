@@ -72,8 +72,9 @@ class VerticalLoads:
             measured = [max(force[2], 0.0) if force else 0.0 for force in valid.forces]
         else:
             measured = [self._weight / _FEWEST * on for on in bears]
-        known = valid.joint_angles or (None,) * len(feet)
-        measured = [load if of_leg else 0.0 for load, of_leg in zip(measured, known, strict=True)]
+        if valid.joint_angles is None or None in valid.joint_angles:
+            known = valid.joint_angles or (None,) * len(feet)
+            measured = [load if of_leg else 0.0 for load, of_leg in zip(measured, known, strict=True)]
         follows = min(_RATE * dt, 1.0)
         self._loads = [load + follows * (new - load) for load, new in zip(self._loads, measured, strict=True)]
         total = sum(self._loads)

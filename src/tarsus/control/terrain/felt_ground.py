@@ -249,7 +249,7 @@ class FeltGround:
         on = [on and stand for on, stand in zip(footing.down, stands, strict=True)]
         footing = footing._replace(down=on)
         missing.step(searches, footing, dt, footholds=footholds, deeper=deeper, age=contacts.age)
-        self.body.roughness.landed(max(missing.edge, 0.0), at_edge=True)
+        self.body.roughness.at_edge(missing.edge)
         return stands
 
     def _searches(self, state: GaitState, footing: Footing, stands: list[bool]) -> list[Search]:

@@ -96,17 +96,26 @@ class Roughness:
         self.value = self._met = self._lasting = 0.0
         self.adaptation, self._scale = adaptation, scale
 
-    def landed(self, off: float, *, at_edge: bool = False) -> None:
+    def landed(self, off: float) -> None:
         """Take note of a foothold.
 
         Parameters
         ----------
-        off, at_edge : float, bool
-            Its height over the expected ground [m]; whether the leg may rest on the edge of a step instead: beside it,
-            legs are steeper with the body higher, but no ground need be deeper.
+        off : float
+            Its height over the expected ground [m].
         """
-        rough = abs(off) - self._scale * _EVEN
-        self.value, self._met = max(self.value, rough), max(self._met, 0.0 if at_edge else rough)
+        self._met = max(self._met, abs(off) - self._scale * _EVEN)
+        self.value = max(self.value, self._met)
+
+    def at_edge(self, depth: float) -> None:
+        """Take note of a leg that may rest on the edge of a step: beside it, legs are steeper with the body higher.
+
+        Parameters
+        ----------
+        depth : float
+            How far below the expected ground its foot is [m].
+        """
+        self.value = max(self.value, depth - self._scale * _EVEN)
 
     def collided(self) -> None:
         """Take note of a collision."""
