@@ -6,10 +6,9 @@ python docs/other_presets.py --jobs 16
 from __future__ import annotations
 
 import argparse
-import itertools
 
-from page_tables import Several, measured, write_tables
-from rough_ground import GROUNDS, PAGE, RANDOM, Outcome, cell, walk
+from page_tables import Several, write_tables
+from rough_ground import GROUNDS, PAGE, cell, walked
 
 ROBOTS = ("phoenix", "phantomx-mk2", "ch3r")
 DEFAULT_GROUNDS = (
@@ -20,16 +19,8 @@ DEFAULT_GROUNDS = (
 
 def tables(asked: argparse.Namespace) -> dict[str, str]:
     """Measure, and return the table: a row for each ground, a column for each robot."""
-    cells = list(itertools.product(asked.grounds, asked.robots))
-    jobs = [
-        (robot, ground, "felt", seed)
-        for ground, robot in cells
-        for seed in range(asked.seeds if ground.startswith(RANDOM) else 1)
-    ]
-    found: dict[tuple[str, str], list[Outcome]] = {}
-    for (robot, ground, _, _), outcome in zip(jobs, measured(walk, jobs, asked.jobs), strict=True):
-        found.setdefault((ground, robot), []).append(outcome)
-    rows = [[ground, *(cell(found[ground, robot]) for robot in asked.robots)] for ground in asked.grounds]
+    found = walked(asked, ["felt"])
+    rows = [[ground, *(cell(found[robot, ground, "felt"]) for robot in asked.robots)] for ground in asked.grounds]
     lines = [f"| | {' | '.join(asked.robots)} |", f"|---|{'---|' * len(asked.robots)}"]
     return {"other presets": "\n".join([*lines, *(f"| {' | '.join(row)} |" for row in rows)])}
 

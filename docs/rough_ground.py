@@ -9,7 +9,7 @@ from __future__ import annotations
 import argparse
 import itertools
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from functools import partial
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -169,16 +169,22 @@ def table(robot: str, grounds: list[str], cases: list[str], found: dict[tuple[st
     return "\n".join(lines)
 
 
-def tables(asked: argparse.Namespace, name: str = "rough ground") -> dict[str, str]:
-    """Measure, and return the table of that name."""
+def walked(asked: argparse.Namespace, cases: Iterable[str]) -> dict[tuple[str, str, str], list[Outcome]]:
+    """Return the outcomes of the walks of each robot over each ground in each case; several over random ground."""
     jobs = [
         (robot, ground, case, seed)
-        for robot, ground, case in itertools.product(asked.robots, asked.grounds, asked.cases)
+        for robot, ground, case in itertools.product(asked.robots, asked.grounds, cases)
         for seed in range(asked.seeds if ground.startswith(RANDOM) else 1)
     ]
     found: dict[tuple[str, str, str], list[Outcome]] = {}
     for (robot, ground, case, _), outcome in zip(jobs, measured(walk, jobs, asked.jobs), strict=True):
         found.setdefault((robot, ground, case), []).append(outcome)
+    return found
+
+
+def tables(asked: argparse.Namespace, name: str = "rough ground") -> dict[str, str]:
+    """Measure, and return the table of that name."""
+    found = walked(asked, asked.cases)
     return {name: "\n\n".join(table(robot, asked.grounds, asked.cases, found) for robot in asked.robots)}
 
 
