@@ -21,8 +21,8 @@ __all__ = ["VerticalLoads"]
 _RATE = 30.0
 # Share of all load from which on a foot bears load in full.
 _BEARS = 0.2
-# Least number of feet that share the weight by their contacts.
-_FEWEST = 3
+# Least number of feet that share the weight by their contacts, and least share of all load that counts as one.
+_FEWEST, _LEAST_SHARE = 3, 0.01
 
 
 class VerticalLoads:
@@ -76,16 +76,21 @@ class VerticalLoads:
             known = valid.joint_angles or (None,) * len(feet)
             measured = [load if of_leg else 0.0 for load, of_leg in zip(measured, known, strict=True)]
         follows = min(_RATE * dt, 1.0)
-        self._loads = [load + follows * (new - load) for load, new in zip(self._loads, measured, strict=True)]
-        total = sum(self._loads)
+        self._loads = loads = [load + follows * (new - load) for load, new in zip(self._loads, measured, strict=True)]
+        total = sum(loads)
         if not total:
             return (0.0,) * len(feet)
-        bear = [min(load / (_BEARS * total), 1.0) for load in self._loads]
+        least, full = _LEAST_SHARE * total, _BEARS * total
+        if valid.forces is not None and len([load for load in loads if load > least]) <= _FEWEST:
+            # Equilibrium determines the loads of three feet.
+            return tuple(loads)
+        bear = [load / full if load < full else 1.0 for load in loads]
         if valid.forces is None:
             if self._centre is None:
                 # As it was when it was first of use: it moves little in B.
                 self._centre = centre_of_mass(self._robot, angles)[:2].tolist()
             return balanced_forces(feet, bear, self._centre, min(total, self._weight))
-        loaded = list(zip(self._loads, feet, strict=True))
-        centre = [sum(load * foot[axis] for load, foot in loaded) / total for axis in (0, 1)]
-        return balanced_forces(feet, bear, centre, total)
+        x = y = 0.0
+        for load, foot in zip(loads, feet, strict=True):
+            x, y = x + load * foot[0], y + load * foot[1]
+        return balanced_forces(feet, bear, (x / total, y / total), total)

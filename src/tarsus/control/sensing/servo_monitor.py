@@ -145,19 +145,17 @@ class ServoMonitor:
             return
         if self._evidence is None:
             self._evidence = np.zeros((2, *commanded.shape))
-        for leg, joint in np.argwhere(off > _IDLE_ERROR).tolist():
+        recent = np.array([angles for _, angles in self._commands])
+        over, under = measured - np.maximum.reduce(recent), np.minimum.reduce(recent) - measured
+        errors = np.maximum(over, under)
+        for leg, joint in np.argwhere(errors > _IDLE_ERROR).tolist():
             now, before, asked = (float(angles[leg, joint]) for angles in (measured, last, commanded))
-            recent = [float(angles[leg, joint]) for _, angles in self._commands]
-            over = now - max(recent)
-            error = max(over, min(recent) - now)
-            if error <= _IDLE_ERROR:
-                continue
             moves = (now - before) * math.copysign(1.0, asked - now) > _MOVES * dt
             torque = self._torque(valid, leg, joint)
             idle = torque < _IDLE and not moves
             stalled = not idle and leg in touching
-            gives_way = joint == _FEMUR and over > _GIVES_WAY and not stalled
-            weight = _weight(error, torque, idle=idle, gives_way=gives_way)
+            gives_way = joint == _FEMUR and over[leg, joint] > _GIVES_WAY and not stalled
+            weight = _weight(float(errors[leg, joint]), torque, idle=idle, gives_way=gives_way)
             self._evidence[0, leg, joint] += dt * weight * (_STALLED if stalled else 1.0)
         if stuck is not None:
             self._evidence[1] += _ONCE * stuck

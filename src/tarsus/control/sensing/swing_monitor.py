@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections import deque
 from collections.abc import Sequence
-from itertools import accumulate
 
 from tarsus.control.readings import ValidReadings
 
@@ -39,8 +38,8 @@ class SwingMonitor:
 
     def __init__(self) -> None:
         self.lag, self._lag, self._usual = 0.0, _LONGEST_LAG, 0.0
-        # For how long what was commanded, last first [s].
-        self._commanded = deque[tuple[float, list[float]]]()
+        # What was commanded, last first, and for how long [s].
+        self._commanded, self._times = deque[list[float]](), deque[float]()
 
     def step(self, commanded: list[float], valid: ValidReadings, dt: float, down: Sequence[bool]) -> list[int]:
         """Return the legs in the air whose coxa joints are stopped.
@@ -52,29 +51,32 @@ class SwingMonitor:
         valid, dt, down : ValidReadings, float, sequence of bool
             The readings; time since the last tick [s]; which feet should stand.
         """
-        commands, stopped = self._commanded, list[int]()
-        commands.appendleft((dt, commanded))
-        window, since = max(time for time, _ in commands), [*accumulate(time for time, _ in commands)]
+        commands, times, stopped = self._commanded, self._times, list[int]()
+        commands.appendleft(commanded)
+        times.appendleft(dt)
+        window, span = max(times), sum(times)
         longest = _LONGEST_LAG + window + dt + _ROUNDING
-        if since[-1] <= longest:
+        if span <= longest:
             return stopped
-        while since[-1] - commands[-1][0] > longest:
-            since.pop()
+        while span - times[-1] > longest:
             commands.pop()
+            span -= times.pop()
         if valid.joint_angles is None:
             return stopped
         lag, usual, oldest = self._lag, self._usual, self._lag + window + _ROUNDING
-        held = [
-            (min(start, oldest) - max(start - time, lag), angles)
-            for start, (time, angles) in zip(since, commands, strict=True)
-            if lag < start and start - time <= oldest
-        ]
+        held, end = list[tuple[float, list[float]]](), 0.0
+        for time, angles_then in zip(times, commands, strict=True):
+            if end > oldest:
+                break
+            start, end = end, end + time
+            if end > lag:
+                held.append((min(end, oldest) - max(start, lag), angles_then))
         newer, older = held[0][1], held[-1][1]
         for leg, angles in enumerate(valid.joint_angles):
             if angles is None or down[leg]:
                 continue
             angle, speed = angles[0], (newer[leg] - older[leg]) / window
-            behind = sum(time * command[leg] for time, command in held) / window - angle
+            behind = sum([time * command[leg] for time, command in held]) / window - angle
             # Within the lag, a leg may have turned around.
             still = (commanded[leg] - angle) * speed > 0.0
             if still and behind * speed > (_BEHIND + _TIMES * usual) * abs(speed):
