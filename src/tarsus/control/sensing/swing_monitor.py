@@ -51,32 +51,18 @@ class SwingMonitor:
         valid, dt, down : ValidReadings, float, sequence of bool
             The readings; time since the last tick [s]; which feet should stand.
         """
-        commands, times, stopped = self._commanded, self._times, list[int]()
-        commands.appendleft(commanded)
-        times.appendleft(dt)
-        window, span = max(times), sum(times)
-        longest = _LONGEST_LAG + window + dt + _ROUNDING
-        if span <= longest:
+        stopped, window = list[int](), self._note(commanded, dt)
+        if not window or valid.joint_angles is None:
             return stopped
-        while span - times[-1] > longest:
-            commands.pop()
-            span -= times.pop()
-        if valid.joint_angles is None:
-            return stopped
-        lag, usual, oldest = self._lag, self._usual, self._lag + window + _ROUNDING
-        held, end = list[tuple[float, list[float]]](), 0.0
-        for time, angles_then in zip(times, commands, strict=True):
-            if end > oldest:
-                break
-            start, end = end, end + time
-            if end > lag:
-                held.append((min(end, oldest) - max(start, lag), angles_then))
+        lag, usual, held = self._lag, self._usual, self._before(window)
         newer, older = held[0][1], held[-1][1]
         for leg, angles in enumerate(valid.joint_angles):
             if angles is None or down[leg]:
                 continue
-            angle, speed = angles[0], (newer[leg] - older[leg]) / window
-            behind = sum([time * command[leg] for time, command in held]) / window - angle
+            angle, speed, turned = angles[0], (newer[leg] - older[leg]) / window, 0.0
+            for time, command in held:
+                turned += time * command[leg]
+            behind = turned / window - angle
             # Within the lag, a leg may have turned around.
             still = (commanded[leg] - angle) * speed > 0.0
             if still and behind * speed > (_BEHIND + _TIMES * usual) * abs(speed):
@@ -88,3 +74,28 @@ class SwingMonitor:
                 self.lag += _LAG_RATE * dt * (lag - self.lag)
         self._lag, self._usual = lag, usual
         return stopped
+
+    def _note(self, commanded: list[float], dt: float) -> float:
+        """Note what was commanded, and return the longest of the last ticks; 0 as long as these are too few [s]."""
+        commands, times = self._commanded, self._times
+        commands.appendleft(commanded)
+        times.appendleft(dt)
+        window, span = max(times), sum(times)
+        longest = _LONGEST_LAG + window + dt + _ROUNDING
+        if span <= longest:
+            return 0.0
+        while span - times[-1] > longest:
+            commands.pop()
+            span -= times.pop()
+        return window
+
+    def _before(self, window: float) -> list[tuple[float, list[float]]]:
+        """Return what was commanded in that time before the lag, last first, and for how long [s]."""
+        held, end, lag, oldest = list[tuple[float, list[float]]](), 0.0, self._lag, self._lag + window + _ROUNDING
+        for time, command in zip(self._times, self._commanded, strict=True):
+            start, end = end, end + time
+            if start > oldest:
+                break
+            if end > lag:
+                held.append((min(end, oldest) - max(start, lag), command))
+        return held

@@ -85,7 +85,7 @@ def moved_vertically(state: GaitState, inputs: StepInputs, dt: float) -> GaitSta
             feet[leg] = foot._replace(speed=0.0, acceleration=0.0)
         elif down:
             # On the ground it moves by its turn about the body, its drift and its slide.
-            before, top, slide = foot.speed, foot.top, foot.slide
+            before, _, top, _, slide, _, _ = foot
             place = places[leg]
             arm = place - origin
             wanted = -(arm * across).real
@@ -93,8 +93,8 @@ def moved_vertically(state: GaitState, inputs: StepInputs, dt: float) -> GaitSta
                 wanted = min(max((state.elevation - height) / _SEARCH_TIME, -_SEARCHING), _SEARCHING)
             if stands:
                 place += (turning * (height - body) - drift - yaw_rate * arm) * dt
-                speed = _towards(before, wanted, step)
-                heights[leg], top = height + (before + speed) / 2 * dt, math.nan
+                speed, top = _towards(before, wanted, step), math.nan
+                heights[leg] = height + (before + speed) / 2 * dt
             else:
                 assert under is not None  # known of each foot that has lost its contact
                 heights[leg], place, speed = _searching(height, foot, place, wanted, under, felt, dt)
@@ -175,7 +175,9 @@ def _swinging(
         over = max(start, under.expected, under.way) + felt.swing_height
         highest = max(under.highest, under.bowed)
         top = max(min(over, highest, fits), height)
-        bow = under.bow * max(min(top, highest) - under.highest, 0.0) / max(highest - under.highest, ROUNDING)
+        bow = under.bow
+        if bow:
+            bow = bow * max(min(top, highest) - under.highest, 0.0) / max(highest - under.highest, ROUNDING)
         if under.steep and 0.0 < phase < _RISING_FIRST:
             drawn_back, top_phase = place, _STEEP_TOP_PHASE
     if phase < top_phase:
