@@ -33,6 +33,12 @@ def test_a_name_is_no_robot(made):
         made(3)
 
 
+@pytest.mark.parametrize("path", [1.0, "straight", None])
+def test_a_distance_is_no_path(path):
+    with pytest.raises(InputError, match=r"^path is .*; it must be a BodyPath, like straight_path\(1.0\)$"):
+        tarsus.plan_walk(STRIDER, tarsus.Gait.named("tripod"), path)
+
+
 def _player():
     return SequencePlayer(sit_down(STRIDER, tarsus.WalkController(STRIDER).angles))
 
