@@ -8,6 +8,7 @@ from tarsus.control.pose.admittance import Admittance
 from tarsus.control.sequence import SequencePlayer
 from tarsus.control.startup import sit_down
 from tarsus.errors import InputError
+from tarsus.hardware import nominal_calibration
 from tarsus.robot.file import load_robot
 from tarsus.simulation import SimulatedPlant
 
@@ -20,7 +21,19 @@ STRIDER = load_robot("strider")
         tarsus.RobotController,
         tarsus.WalkController,
         tarsus.IdealPlant,
+        tarsus.Guard,
+        tarsus.GuardBounds.of,
         SimulatedPlant,
+        tarsus.default_stance,
+        tarsus.folded_pose,
+        tarsus.handbook,
+        tarsus.sit_down,
+        lambda robot: tarsus.stand_up(robot, np.zeros((6, 3))),
+        lambda robot: tarsus.joint_loads(robot, None),
+        lambda robot: tarsus.compliant_loads(robot, None),
+        lambda robot: tarsus.size_servos(robot, None),
+        lambda robot: tarsus.cycle_torques(robot, tarsus.Gait.named("tripod"), stroke=0.06),
+        lambda robot: nominal_calibration(robot, "strider"),
         lambda robot: tarsus.plan_walk(robot, None, tarsus.straight_path(0.1)),
         lambda robot: tarsus.inverse_kinematics(robot, np.zeros((6, 3))),
         lambda robot: tarsus.forward_kinematics(robot, np.zeros((6, 3))),

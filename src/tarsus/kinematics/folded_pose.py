@@ -12,7 +12,7 @@ from tarsus.errors import InputError
 from tarsus.kinematics.leg import forward_kinematics, point_parts
 from tarsus.kinematics.underside import belly_depth
 from tarsus.robot.geometry import LegGeometry
-from tarsus.robot.robot import Robot
+from tarsus.robot.robot import Robot, require_robot
 
 if TYPE_CHECKING:
     from jaxtyping import Float
@@ -54,6 +54,7 @@ def folded_pose(robot: Robot) -> Float[np.ndarray, "legs 3"]:
     InputError
         If the robot is a batch of designs.
     """
+    require_robot(robot)
     if robot.batch_shape:
         raise InputError(f"folded_pose takes a single robot, not a batch {robot.batch_shape} of designs")
     return _folded_pose(robot)

@@ -13,7 +13,7 @@ from tarsus.kinematics.nearest import tibia_bend, tibia_branch
 from tarsus.kinematics.reach import ANGLE_TOLERANCE
 from tarsus.kinematics.triangle import direction, to_leg_frame
 from tarsus.robot.geometry import LegGeometry
-from tarsus.robot.robot import Robot
+from tarsus.robot.robot import Robot, require_robot
 
 if TYPE_CHECKING:
     from jaxtyping import Bool, Float
@@ -182,6 +182,7 @@ def default_stance(
     UnreachableError
         If a leg does not reach the ground at that body height; the message gives the body heights that are possible.
     """
+    require_robot(robot)
     height = default_body_height(robot) if body_height is None else body_height
     rise = default_swing_height(robot) if swing_height is None else swing_height
     feet = stance_or_nan(robot, height, swing_height=rise)

@@ -21,7 +21,7 @@ from tarsus.kinematics.stance import default_body_height, default_stance, defaul
 from tarsus.load.cycle_sweep import CyclePhases, CycleSweep
 from tarsus.load.payload import Payload, as_payload
 from tarsus.representation import Rows, represented
-from tarsus.robot.robot import JOINTS, Robot
+from tarsus.robot.robot import JOINTS, Robot, require_robot
 from tarsus.robot.shape import TAILS
 
 if TYPE_CHECKING:
@@ -130,6 +130,7 @@ def cycle_torques(
     InputError
         If a number is not finite or out of range, or the gait is for another number of legs or has a body shift.
     """
+    require_robot(robot)
     robot.require_masses()
     gait.require_legs(robot.legs)
     if gait.body_shift:

@@ -19,7 +19,7 @@ from tarsus.load.inverse_dynamics import motion_torques
 from tarsus.load.payload import Payload, as_payload
 from tarsus.load.servo_limits import at_supply, utilisation
 from tarsus.representation import Rows, represented
-from tarsus.robot.robot import JOINTS, Robot
+from tarsus.robot.robot import JOINTS, Robot, require_robot
 
 if TYPE_CHECKING:
     from jaxtyping import Float, Int
@@ -294,6 +294,7 @@ def joint_loads(
     InputError
         If a value is not finite or out of range, or the motion has another number of legs.
     """
+    require_robot(robot)
     if robot.legs != motion.angles.shape[1]:
         raise InputError(f"the motion has {motion.angles.shape[1]} legs, robot {robot.name!r} has {robot.legs}")
     if supply is not None and not 0 < supply < float("inf"):

@@ -26,7 +26,7 @@ from tarsus.load.verdict import (
 )
 from tarsus.representation import represented
 from tarsus.robot.catalogue import servo_catalogue
-from tarsus.robot.robot import JOINTS, Robot
+from tarsus.robot.robot import JOINTS, Robot, require_robot
 from tarsus.robot.servo import Servo
 
 if TYPE_CHECKING:
@@ -171,6 +171,7 @@ def size_servos(
     MissingDataError
         If the robot's masses are unknown.
     """
+    require_robot(robot)
     require_rule(rule)
     robot.require_masses()
     base = loads if loads.robot == robot else _reloaded(loads, robot)

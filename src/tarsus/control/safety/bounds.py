@@ -11,7 +11,7 @@ import numpy as np
 from tarsus.errors import InputError
 from tarsus.representation import represented
 from tarsus.robot.joint_limits import STOPPING_TIME, UNKNOWN_SPEED, joint_limits, servo_speeds
-from tarsus.robot.robot import Robot
+from tarsus.robot.robot import Robot, require_robot
 
 if TYPE_CHECKING:
     from jaxtyping import Float
@@ -120,6 +120,7 @@ class GuardBounds:
         InputError
             If the robot is a batch of designs, or a value has the wrong shape or is out of range.
         """
+        require_robot(robot)
         if robot.batch_shape:
             raise InputError(f"a guard needs a single robot; {robot.name!r} is a batch of {robot.batch_shape} designs")
         assumptions: tuple[str, ...] = ()

@@ -21,7 +21,7 @@ from tarsus.kinematics.inverse import inverse_kinematics
 from tarsus.kinematics.pose import Pose
 from tarsus.kinematics.stance import default_stance
 from tarsus.representation import represented
-from tarsus.robot.robot import Robot
+from tarsus.robot.robot import Robot, require_robot
 
 if TYPE_CHECKING:
     from jaxtyping import Float
@@ -79,6 +79,7 @@ class Guard:
         start: Float[Array, "legs 3"] | None = None,
         log_size: int = 1000,
     ) -> None:
+        require_robot(robot)
         for kind, name, known in (("policy", policy, get_args(Policy)), ("recovery", recover, get_args(Recovery))):
             if name not in known:
                 raise UnknownNameError.of(kind, str(name), known)

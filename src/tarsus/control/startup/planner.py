@@ -30,7 +30,7 @@ from tarsus.kinematics.stance import (
 )
 from tarsus.kinematics.underside import belly_depth
 from tarsus.robot.joint_limits import joint_limits
-from tarsus.robot.robot import Robot
+from tarsus.robot.robot import Robot, require_robot
 
 if TYPE_CHECKING:
     from jaxtyping import Bool, Float
@@ -206,6 +206,7 @@ def fold(
 
 def _checked(robot: Robot, swing_height: float | None, margin: float) -> tuple[float, float]:
     """Return the swing height and the stability margin, checked."""
+    require_robot(robot)
     if robot.batch_shape:
         raise InputError(f"a motion sequence is planned for a single robot, not a batch {robot.batch_shape} of designs")
     swing_height = float(default_swing_height(robot)) if swing_height is None else swing_height

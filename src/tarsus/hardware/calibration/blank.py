@@ -9,7 +9,7 @@ import numpy as np
 from tarsus.hardware.calibration.bus_commands import BusCommands, bus_commands, usual_bus
 from tarsus.hardware.calibration.calibration import Calibration
 from tarsus.hardware.calibration.parts import BusSettings, JointCalibration
-from tarsus.robot.robot import Robot
+from tarsus.robot.robot import Robot, require_robot
 from tarsus.robot.servo import Servo
 from tarsus.robot.units import per_radian, to_decimal
 
@@ -42,6 +42,7 @@ def new_calibration(
     UnknownNameError
         If there is no such kind of bus.
     """
+    require_robot(robot)
     chosen = usual_bus(robot.servos[0][0]) if kind is None else bus_commands(kind)
     joints = tuple(tuple(_joint(chosen, "main", servo) for servo in row) for row in robot.servos)
     buses = (BusSettings(name="main", kind=chosen.name, port=port),)

@@ -22,7 +22,7 @@ from tarsus.load.compliant.vibration import rigid_inertia
 from tarsus.load.contact import GRAVITY, upward
 from tarsus.load.loads import JointLoads, joint_loads
 from tarsus.load.payload import Payload, as_payload
-from tarsus.robot.robot import Robot
+from tarsus.robot.robot import Robot, require_robot
 
 if TYPE_CHECKING:
     from jaxtyping import Float, Int
@@ -81,6 +81,7 @@ def compliant_loads(
     InputError
         If the robot is a batch, or a value is out of its range.
     """
+    require_robot(robot)
     if robot.batch_shape:
         raise InputError(f"robot {robot.name!r} is a batch of designs {robot.batch_shape}; expected one robot")
     if not 0 < rate < math.inf:

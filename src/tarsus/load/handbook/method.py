@@ -18,7 +18,7 @@ from tarsus.load.handbook.lines import Line, Sheet, Term, plain_number
 from tarsus.load.handbook.sections import write_sections
 from tarsus.load.handbook.source import NOTES, NOTES_ONE_LEG_UP, printed_numbers
 from tarsus.representation import represented
-from tarsus.robot.robot import JOINTS, Robot
+from tarsus.robot.robot import JOINTS, Robot, require_robot
 
 if TYPE_CHECKING:
     from jaxtyping import Float
@@ -196,6 +196,7 @@ def handbook(  # noqa: PLR0913 - the calculation's assumptions are one list, all
     InputError
         If the robot is a batch, the leg does not exist, or a number is out of range.
     """
+    require_robot(robot)
     if robot.batch_shape:
         raise InputError(f"handbook takes a single robot, not a batch {robot.batch_shape}")
     robot.require_masses()
