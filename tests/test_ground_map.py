@@ -308,10 +308,15 @@ def test_heights_are_checked_where_they_are_made_and_where_they_come_in():
         GroundHeights(heights=np.zeros(3))
     with pytest.raises(InputError, match=r"shape \(0, 3\) must have two axes, some points"):
         GroundHeights(heights=np.zeros((0, 3)))
+    for wrong in ("high", [[0.0, 0.1], [0.0]], None):
+        with pytest.raises(InputError, match=r"^ground heights"):
+            GroundHeights(heights=wrong)
     with pytest.raises(InputError, match="infinite"):
         GroundHeights(heights=np.full((2, 2), math.inf))
     with pytest.raises(InputError, match="cell is 0 m"):
         GroundHeights(heights=np.zeros((2, 2)), cell=0.0)
+    with pytest.raises(InputError, match="cell is 'x'; it must be a number"):
+        GroundHeights(heights=np.zeros((2, 2)), cell="x")
     heights, validator = GroundHeights(heights=[[0.0, math.nan]]), ReadingsValidator(STRIDER)
     assert not heights.heights.flags.writeable
     valid = validator.validate(SensorReadings(ground=heights, age={"ground": 0.04}), 0.01)

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, TypeAlias
 import numpy as np
 
 from tarsus.errors import InputError
+from tarsus.gait.walk_setup import require_float
 from tarsus.representation import represented
 
 if TYPE_CHECKING:
@@ -54,22 +55,28 @@ class GroundHeights:
     Raises
     ------
     InputError
-        If the array is empty or has not two axes, a height is infinite, or `cell` is not a positive number.
+        If the heights are no array of numbers with two axes and some points, one is infinite, or `cell` is not a
+        positive number.
     """
 
     heights: Float[np.ndarray, "rows columns"]
     cell: float = 0.02
 
     def __post_init__(self) -> None:
-        heights = np.array(self.heights, dtype=np.float64)
+        try:
+            heights = np.array(self.heights, dtype=np.float64)
+        except (TypeError, ValueError) as error:
+            raise InputError(f"ground heights: expected an array of numbers: {error}") from None
         if heights.ndim != 2 or not heights.size or np.isinf(heights).any():
             raise InputError(
                 f"ground heights of shape {heights.shape} must have two axes, some points and no infinite value"
             )
-        if not 0 < self.cell < np.inf:
-            raise InputError(f"ground heights: cell is {self.cell:g} m; it must be a positive number")
+        cell = require_float("ground heights: cell", self.cell)
+        if not 0 < cell < np.inf:
+            raise InputError(f"ground heights: cell is {cell:g} m; it must be a positive number")
         heights.setflags(write=False)
         object.__setattr__(self, "heights", heights)
+        object.__setattr__(self, "cell", cell)
 
     def at(self, places: Shaped[np.ndarray, "..."]) -> Shaped[np.ndarray, "..."]:
         """Return the heights at places x + iy from the middle, NaN where they are not known [m].
