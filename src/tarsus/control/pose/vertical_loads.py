@@ -21,8 +21,8 @@ __all__ = ["VerticalLoads"]
 _RATE = 30.0
 # Share of all load from which on a foot bears load in full.
 _BEARS = 0.2
-# Least number of feet that share the weight by their contacts, and least share of all load that counts as one.
-_FEWEST, _LEAST_SHARE = 3, 0.01
+# Least number of feet that share the weight by their contacts.
+_FEWEST = 3
 
 
 class VerticalLoads:
@@ -80,11 +80,8 @@ class VerticalLoads:
         total = sum(loads)
         if not total:
             return (0.0,) * len(feet)
-        least, full = _LEAST_SHARE * total, _BEARS * total
-        if valid.forces is not None and len([load for load in loads if load > least]) <= _FEWEST:
-            # Equilibrium determines the loads of three feet.
-            return tuple(loads)
-        bear = [load / full if load < full else 1.0 for load in loads]
+        full = _BEARS * total
+        bear = [min(load / full, 1.0) for load in loads]
         if valid.forces is None:
             if self._centre is None:
                 # As it was when it was first of use: it moves little in B.
