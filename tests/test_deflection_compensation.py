@@ -81,6 +81,14 @@ def test_forces_with_which_feet_only_press_against_each_other_add_nothing(monkey
         np.testing.assert_allclose(stepped(valid).offsets, expected, atol=1e-6)
 
 
+def test_two_feet_that_are_pressed_down_in_turn_share_their_load():
+    loads, feet = vertical_loads.VerticalLoads(ROBOT), [(0.1, 0.1), (0.0, 0.15), (-0.1, 0.1)] * 2
+    pressed = ValidReadings(joint_angles=((0.0, 0.0, 0.0),) * 6, forces=((0.0, 0.0, 8.0), (0.0, 0.0, 4.0), *[None] * 4))
+    found = loads.step(pressed, NOTHING_BEARS, 1.0, feet=feet, angles=ANGLES)
+    # Taken as they are measured, each would be pressed down further, until the other is.
+    assert found == pytest.approx((6.0, 6.0, 0.0, 0.0, 0.0, 0.0))
+
+
 @pytest.mark.no_cover
 @pytest.mark.parametrize("servos", ["ideal", "catalogue"])
 def test_in_physics_the_feet_of_a_wave_walk_slide_little(servos):
