@@ -19,15 +19,7 @@ from tarsus.errors import InputError
 if TYPE_CHECKING:
     from jaxtyping import Float
 
-__all__ = [
-    "BodyPath",
-    "curved_path",
-    "ground_to_heading",
-    "heading_to_ground",
-    "require_path",
-    "straight_path",
-    "twist_path",
-]
+__all__ = ["BodyPath", "curved_path", "ground_to_heading", "heading_to_ground", "straight_path", "twist_path"]
 
 
 @dataclass(frozen=True)
@@ -138,23 +130,6 @@ def ground_to_heading(planar_pose: Float[Array, "..."], points: Float[Array, "..
     x, y = points[..., 0] - pose[..., None, 0], points[..., 1] - pose[..., None, 1]
     moved = (cos * x + sin * y, cos * y - sin * x)
     return stack_last(xp, (*moved, points[..., 2] + xp.zeros_like(moved[0])))
-
-
-def require_path(path: object) -> None:
-    """Refuse what is no path.
-
-    Parameters
-    ----------
-    path : object
-        Expected: a `BodyPath`.
-
-    Raises
-    ------
-    InputError
-        If it is not.
-    """
-    if not isinstance(path, BodyPath):
-        raise InputError(f"path is {path!r}; it must be a BodyPath, like straight_path(1.0)")
 
 
 def straight_path(distance: float, heading: float = 0.0) -> BodyPath:

@@ -15,7 +15,7 @@ from tarsus.gait.excursion import SWING_SAMPLES
 from tarsus.gait.gait import Gait
 from tarsus.gait.motion import Motion
 from tarsus.gait.pace import choose_pace
-from tarsus.gait.path import BodyPath, heading_to_ground, require_path
+from tarsus.gait.path import BodyPath, heading_to_ground
 from tarsus.gait.rolling_feet import roll_feet
 from tarsus.gait.shifted_walk import shifted_pose, walk_shift
 from tarsus.gait.spacing import passing_distance
@@ -128,7 +128,8 @@ def plan_walk(  # noqa: PLR0913 - the options of a walk, all of them with defaul
         for name, value in (("stroke", stroke), ("speed", speed), ("cycle_time", cycle_time))
     )
     rate = require_number("rate", rate, zero=False)
-    require_path(path)
+    if not isinstance(path, BodyPath):
+        raise InputError(f"path is {path!r}; it must be a BodyPath, like straight_path(1.0)")
     travel = float(path.travel(setup.rest).max())
     if not _SHORTEST_PATH <= travel < math.inf:
         raise InputError(

@@ -85,7 +85,7 @@ def moved_vertically(state: GaitState, inputs: StepInputs, dt: float) -> GaitSta
             feet[leg] = foot._replace(speed=0.0, acceleration=0.0)
         elif down:
             # On the ground it moves by its turn about the body, its drift and its slide.
-            before, _, top, _, slide, _, _ = foot
+            before, top, slide = foot.speed, foot.top, foot.slide
             place = places[leg]
             arm = place - origin
             wanted = -(arm * across).real
@@ -93,8 +93,8 @@ def moved_vertically(state: GaitState, inputs: StepInputs, dt: float) -> GaitSta
                 wanted = min(max((state.elevation - height) / _SEARCH_TIME, -_SEARCHING), _SEARCHING)
             if stands:
                 place += (turning * (height - body) - drift - yaw_rate * arm) * dt
-                speed, top = _towards(before, wanted, step), math.nan
-                heights[leg] = height + (before + speed) / 2 * dt
+                speed = _towards(before, wanted, step)
+                heights[leg], top = height + (before + speed) / 2 * dt, math.nan
             else:
                 assert under is not None  # known of each foot that has lost its contact
                 heights[leg], place, speed = _searching(height, foot, place, wanted, under, felt, dt)
