@@ -8,9 +8,12 @@ from tarsus.control.pose.admittance import Admittance
 from tarsus.control.sequence import SequencePlayer
 from tarsus.control.startup import sit_down
 from tarsus.errors import InputError
+from tarsus.export.urdf import to_urdf
 from tarsus.hardware import nominal_calibration
+from tarsus.load.deflection import checked_share
 from tarsus.robot.file import load_robot
 from tarsus.simulation import SimulatedPlant
+from tarsus.simulation.robot_model import model_assumptions
 
 STRIDER = load_robot("strider")
 
@@ -37,6 +40,27 @@ STRIDER = load_robot("strider")
         lambda robot: tarsus.plan_walk(robot, None, tarsus.straight_path(0.1)),
         lambda robot: tarsus.inverse_kinematics(robot, np.zeros((6, 3))),
         lambda robot: tarsus.forward_kinematics(robot, np.zeros((6, 3))),
+        lambda robot: tarsus.leg_jacobian(robot, np.zeros((6, 3))),
+        tarsus.coxa_frames,
+        lambda robot: tarsus.reachable_fraction(robot, np.zeros((6, 3)), tarsus.Pose(), tarsus.Pose()),
+        lambda robot: tarsus.reachable_band(robot, np.zeros(3)),
+        tarsus.default_body_height,
+        tarsus.default_swing_height,
+        tarsus.total_mass,
+        lambda robot: tarsus.joint_torques(robot, np.zeros((6, 3)), tarsus.Pose(), np.ones(6, dtype=bool)),
+        lambda robot: tarsus.contact_forces(robot, np.zeros((6, 3)), tarsus.Pose(), np.ones(6, dtype=bool)),
+        lambda robot: tarsus.contact_forces_with_friction(
+            robot, np.zeros((6, 3)), tarsus.Pose(), np.ones(6, dtype=bool), friction=1.0
+        ),
+        tarsus.compare_with_statics,
+        lambda robot: tarsus.fold(robot, np.zeros((6, 3))),
+        lambda robot: tarsus.power_off_order(robot, np.zeros((6, 3))),
+        tarsus.plausibility_warnings,
+        tarsus.try_gaits,
+        tarsus.robot_to_dict,
+        lambda robot: tarsus.save_robot(robot, "robot.toml"),
+        model_assumptions,
+        to_urdf,
     ],
 )
 def test_a_name_is_no_robot(made):
@@ -63,6 +87,12 @@ def _player():
         ("admittance: mass", lambda: Admittance(mass="x", damping=1.0, stiffness=1.0)),
         ("stance_width", lambda: tarsus.WalkController(STRIDER, stance_width="x")),
         ("body_height", lambda: tarsus.WalkController(STRIDER, body_height="x")),
+        ("distance", lambda: tarsus.straight_path("x")),
+        ("centre", lambda: tarsus.curved_path(1.0, (0.0, "x"))),
+        ("twist", lambda: tarsus.twist_path(0.1, 0.0, "x", 1.0)),
+        ("duration", lambda: tarsus.twist_path(0.1, 0.0, 0.0, "x")),
+        ("a path's duration", lambda: tarsus.BodyPath((0.1, 0.0, 0.0), duration="x")),
+        ("share", lambda: checked_share("x")),
         ("dt", lambda: _player().step("x")),
         (
             "jitter",
@@ -91,3 +121,26 @@ def test_a_plant_takes_angles_of_all_its_legs():
     plant.start(tarsus.RobotController(STRIDER).output)
     with pytest.raises(InputError, match=r"the commanded angles have shape \(4, 3\); expected \(6, 3\)"):
         plant.execute(np.zeros((4, 3)), 0.01)
+
+
+@pytest.mark.parametrize(("name", "kind"), [("adaptation", "GroundAdaptation"), ("admittance", "Admittance")])
+def test_a_text_is_no_option_of_a_walk(name, kind):
+    with pytest.raises(InputError, match=f"^{name} is 'x'; it must be of class {kind}$"):
+        tarsus.WalkController(STRIDER, **{name: "x"})
+
+
+@pytest.mark.parametrize("name", [None, 3, b"strider"])
+def test_what_is_no_name_is_no_robot(name):
+    with pytest.raises(InputError, match=r"is no robot's name or path; the presets are .*strider"):
+        load_robot(name)
+
+
+def test_loads_name_joints_that_a_robot_lacks():
+    motion = tarsus.plan_walk(STRIDER, tarsus.Gait.named("tripod"), tarsus.straight_path(0.1))
+    loads = tarsus.joint_loads(STRIDER, motion)
+    assert loads.cause(0, 1)
+    with pytest.raises(InputError, match=r"^cause: the robot has no leg 'RF'; its legs are 0 to 5$"):
+        loads.cause("RF", 1)
+    for name, made in (("cause", lambda: loads.cause(0, 3)), ("worst", lambda: loads.worst(3))):
+        with pytest.raises(InputError, match=f"^{name}: a leg has no joint 3; its joints are 0 coxa"):
+            made()

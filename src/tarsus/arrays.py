@@ -28,6 +28,7 @@ __all__ = [
     "namespace",
     "only_where_needed",
     "require_finite",
+    "require_float",
     "require_shape",
     "root",
     "stack_last",
@@ -117,6 +118,25 @@ def is_traced(array: Any) -> bool:
     """
     jax = sys.modules.get("jax")
     return jax is not None and isinstance(array, jax.core.Tracer)
+
+
+def require_float(name: str, value: float) -> float:
+    """Return a number as a float.
+
+    Parameters
+    ----------
+    name, value : str, float
+        Its name in messages; the number.
+
+    Raises
+    ------
+    InputError
+        If it is not a number.
+    """
+    try:
+        return float(value)
+    except (TypeError, ValueError):
+        raise InputError(f"{name} is {value!r}; it must be a number") from None
 
 
 def require_finite(name: str, array: Num[Array, "..."]) -> None:

@@ -8,10 +8,9 @@ from typing import TYPE_CHECKING, Any, Protocol, runtime_checkable
 
 import numpy as np
 
-from tarsus.arrays import require_finite
+from tarsus.arrays import require_finite, require_float
 from tarsus.control.control_output import ControlOutput
 from tarsus.control.readings import RollPitch, SensorReadings
-from tarsus.gait.walk_setup import require_float
 from tarsus.kinematics.mass import known_weight
 from tarsus.load.foot_force import balanced_forces
 from tarsus.representation import represented

@@ -31,6 +31,7 @@ from tarsus.control.walk.joint_solver import JointSolver
 from tarsus.control.walk.state import GaitState
 from tarsus.control.walk.time_scaling import TimeScaling
 from tarsus.control.walk_state import TickState, WalkState
+from tarsus.errors import InputError
 from tarsus.gait.gait import Gait
 from tarsus.gait.walk_setup import WalkSetup, require_number
 from tarsus.kinematics.pose import Pose
@@ -121,6 +122,9 @@ class WalkController:
         stance = planner.initial_stance(setup, stance_width=stance_width, cycle_time=cycle_time)
         foot_targets, solver = FootTargets(self.robot), JointSolver(self.robot)
         adaptation = GroundAdaptation() if adaptation is None else adaptation
+        for name, value, kind in (("adaptation", adaptation, GroundAdaptation), ("admittance", admittance, Admittance)):
+            if value is not None and not isinstance(value, kind):
+                raise InputError(f"{name} is {value!r}; it must be of class {kind.__name__}")
         body = BodyMotion(self.robot, levelling=levelling, adaptation=adaptation)
         transitions = TransitionExecutor(stance, foot_targets, scale=body.reach.scale)
         state = GaitState.standing(stance.rest, transitions.pose.target)

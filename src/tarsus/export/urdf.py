@@ -11,7 +11,7 @@ import numpy as np
 
 from tarsus.errors import InputError
 from tarsus.robot.joint_limits import UNKNOWN_SPEED
-from tarsus.robot.robot import JOINTS, Robot
+from tarsus.robot.robot import JOINTS, Robot, require_robot
 from tarsus.simulation.inertia import RigidBody, body_inertia, link_inertia, link_step
 
 if TYPE_CHECKING:
@@ -54,6 +54,7 @@ def to_urdf(robot: Robot) -> str:
     InputError
         If the robot is a batch.
     """
+    require_robot(robot)
     if robot.batch_shape:
         raise InputError(f"robot {robot.name!r} is a batch of designs {robot.batch_shape}; expected one robot")
     robot.require_masses()

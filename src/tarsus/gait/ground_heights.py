@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING, TypeAlias
 
 import numpy as np
 
+from tarsus.arrays import require_float
 from tarsus.errors import InputError
-from tarsus.gait.walk_setup import require_float
 from tarsus.representation import represented
 
 if TYPE_CHECKING:

@@ -11,9 +11,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-import numpy as np
-
-from tarsus.arrays import Array, Namespace, as_array, namespace, stack_last
+from tarsus.arrays import Array, Namespace, as_array, namespace, require_float, stack_last
 from tarsus.errors import InputError
 
 if TYPE_CHECKING:
@@ -38,14 +36,16 @@ class BodyPath:
     duration: float | None = None
 
     def __post_init__(self) -> None:
-        values = tuple(float(v) for v in self.displacement)
+        values = tuple(require_float("a path's displacement", value) for value in self.displacement)
         if len(values) != 3 or not all(map(math.isfinite, values)):
             raise InputError(f"a path's displacement is {self.displacement}; it must be three finite numbers")
         if not any(values):
             raise InputError("the path has no length; distance, angle or speed must not be 0")
         object.__setattr__(self, "displacement", values)
-        if self.duration is not None and not 0 < self.duration < math.inf:
-            raise InputError(f"a path's duration is {self.duration} s; it must be greater than 0 and finite")
+        if self.duration is not None:
+            object.__setattr__(self, "duration", require_float("a path's duration", self.duration))
+            if not 0 < self.duration < math.inf:
+                raise InputError(f"a path's duration is {self.duration} s; it must be greater than 0 and finite")
 
     @property
     def angle(self) -> float:
@@ -147,6 +147,7 @@ def straight_path(distance: float, heading: float = 0.0) -> BodyPath:
     InputError
         If the distance is 0, or a value is not finite.
     """
+    distance, heading = require_float("distance", distance), require_float("heading", heading)
     if not (math.isfinite(distance) and math.isfinite(heading)):
         raise InputError(f"the path's distance is {distance} m, its heading {heading} rad; both must be finite numbers")
     return BodyPath((distance * math.cos(heading), distance * math.sin(heading), 0.0))
@@ -167,7 +168,8 @@ def curved_path(angle: float, centre: tuple[float, float] = (0.0, 0.0)) -> BodyP
     InputError
         If the angle is 0, or a value is not finite.
     """
-    return BodyPath((angle * centre[1], -angle * centre[0], angle))
+    angle, (x, y) = require_float("angle", angle), (require_float("centre", value) for value in centre)
+    return BodyPath((angle * y, -angle * x, angle))
 
 
 def twist_path(vx: float, vy: float, wz: float, duration: float) -> BodyPath:
@@ -187,8 +189,10 @@ def twist_path(vx: float, vy: float, wz: float, duration: float) -> BodyPath:
     InputError
         If the twist is 0, a value is not finite, or the duration is not positive.
     """
-    if not np.isfinite([vx, vy, wz]).all():
+    vx, vy, wz = (require_float("twist", value) for value in (vx, vy, wz))
+    if not all(map(math.isfinite, (vx, vy, wz))):
         raise InputError(f"the twist is ({vx}, {vy}, {wz}); it must be three finite numbers")
+    duration = require_float("duration", duration)
     if not 0 < duration < math.inf:
         raise InputError(f"the duration is {duration} s; it must be greater than 0 and finite")
     return BodyPath((vx * duration, vy * duration, wz * duration), duration=duration)

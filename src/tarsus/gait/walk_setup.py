@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Self
 
 import numpy as np
 
-from tarsus.arrays import Array
+from tarsus.arrays import Array, require_float
 from tarsus.errors import InputError
 from tarsus.gait.cycle import tilted_body
 from tarsus.gait.gait import Gait
@@ -24,7 +24,7 @@ from tarsus.robot.robot import Robot, require_robot
 if TYPE_CHECKING:
     from jaxtyping import Float
 
-__all__ = ["HEADING_FRAME", "WalkSetup", "require_float", "require_number"]
+__all__ = ["HEADING_FRAME", "WalkSetup", "require_number"]
 
 HEADING_FRAME = "the heading frame (on the ground below the body)"
 """Name of the frame of feet that are given without a pose of the body in the ground plane."""
@@ -72,25 +72,6 @@ def require_number(name: str, value: float, *, zero: bool, most: float = math.in
     if number == 0 and not zero:
         raise InputError(f"{name} is 0; it must be greater than 0")
     return number
-
-
-def require_float(name: str, value: float) -> float:
-    """Return a number as a float.
-
-    Parameters
-    ----------
-    name, value : str, float
-        Its name in messages; the number.
-
-    Raises
-    ------
-    InputError
-        If it is not a number.
-    """
-    try:
-        return float(value)
-    except (TypeError, ValueError):
-        raise InputError(f"{name} is {value!r}; it must be a number") from None
 
 
 @dataclass(frozen=True)

@@ -10,7 +10,7 @@ from tarsus.arrays import Array, namespace, stack_last
 from tarsus.errors import InputError
 from tarsus.kinematics.inverse import inverse_kinematics
 from tarsus.kinematics.pose import Pose
-from tarsus.robot.robot import Robot
+from tarsus.robot.robot import Robot, require_robot
 
 if TYPE_CHECKING:
     from jaxtyping import Float
@@ -39,6 +39,7 @@ def coxa_frames(robot: Robot) -> Pose:
     Pose
         With batch axes ``(..., legs)`` [m].
     """
+    require_robot(robot)
     g = robot.geometry
     xp = namespace(g.coxa)
     zero, one = xp.zeros_like(g.cos_yaw), xp.ones_like(g.cos_yaw)
@@ -71,6 +72,7 @@ def reachable_fraction(robot: Robot, feet: Float[Array, "legs 3"], start: Pose, 
     InputError
         If the robot or a pose is a batch, or the feet have the wrong shape or are not finite.
     """
+    require_robot(robot)
     if robot.batch_shape or start.batch_shape or goal.batch_shape or np.ndim(feet) != 2:
         raise InputError("reachable_fraction takes a single robot, feet of shape (legs, 3) and single poses")
     rpy, position = np.asarray(start.rpy), np.asarray(start.position)

@@ -81,6 +81,7 @@ def leg_jacobian(robot: Robot, angles: Float[Array, "*#batch legs 3"]) -> Float[
     InputError
         If the angles have the wrong shape or are not finite.
     """
+    require_robot(robot)
     return _by_blocks(_jacobian_parts, robot, angles, (3, 3))
 
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from tarsus.arrays import Array, Namespace, as_array, as_floats, broadcast_shapes, namespace, require_shape, stack_last
 from tarsus.kinematics.leg import forward_kinematics
-from tarsus.robot.robot import Robot
+from tarsus.robot.robot import Robot, require_robot
 
 if TYPE_CHECKING:
     from jaxtyping import Float
@@ -38,6 +38,7 @@ def total_mass(robot: Robot) -> Float[Array, "*batch"]:
     MissingDataError
         If the mass of the body or of a link is unknown.
     """
+    require_robot(robot)
     robot.require_masses()
     xp = namespace(robot.body_mass, robot.link_mass)
     links = xp.sum(as_array(xp, robot.link_mass), axis=(-2, -1))

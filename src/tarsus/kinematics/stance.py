@@ -40,6 +40,7 @@ def default_body_height(robot: Robot) -> Float[Array, "..."]:
     robot : Robot
         The robot; for a batch of designs, the least body height of all is returned.
     """
+    require_robot(robot)
     if robot.gait.body_height is not None:
         return robot.gait.body_height
     g = robot.geometry
@@ -57,6 +58,7 @@ def default_swing_height(robot: Robot) -> Float[Array, ""]:
     robot : Robot
         The robot, or a batch of designs.
     """
+    require_robot(robot)
     return robot.gait.swing_height if robot.gait.swing_height is not None else abs(default_body_height(robot)) / 4
 
 
@@ -86,6 +88,7 @@ def reachable_band(
     InputError
         If a height is not a finite number.
     """
+    require_robot(robot)
     g = robot.geometry
     xp = namespace(height, *g)
     g = g.to(xp)

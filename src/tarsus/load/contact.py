@@ -30,7 +30,7 @@ from tarsus.kinematics.pose import Pose
 from tarsus.load.load_distribution import load_fractions, single_pose_fractions
 from tarsus.load.payload import Payload, as_payload
 from tarsus.representation import represented
-from tarsus.robot.robot import Robot
+from tarsus.robot.robot import Robot, require_robot
 
 if TYPE_CHECKING:
     from jaxtyping import Bool, Float
@@ -119,6 +119,7 @@ def contact_forces(
     InputError
         If a shape is wrong, a value is not finite, no foot is on the ground, or gravity is 0.
     """
+    require_robot(robot)
     robot.require_masses()
     carried = as_payload(payload)
     strength, axes = upward(gravity)

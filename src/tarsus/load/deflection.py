@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from tarsus.arrays import require_float
 from tarsus.errors import InputError
 from tarsus.gait.motion import Motion
 from tarsus.load.compliant.joint_springs import JointSprings
@@ -70,6 +71,7 @@ def joint_deflections(
     InputError
         If `transfer_time` is negative or not finite.
     """
+    transfer_time = require_float("transfer_time", transfer_time)
     if not 0 <= transfer_time < np.inf:
         raise InputError(f"transfer_time is {transfer_time:g} s; it must be a finite number, not negative")
     springs = JointSprings.of(motion.robot) if springs is None else springs
@@ -100,9 +102,10 @@ def checked_share(share: float) -> float:
     InputError
         If it is not between 0 and 1.
     """
-    if not 0 <= share <= 1:
-        raise InputError(f"share is {share:g}; it must be a number from 0 to 1")
-    return float(share)
+    number = require_float("share", share)
+    if not 0 <= number <= 1:
+        raise InputError(f"share is {number:g}; it must be a number from 0 to 1")
+    return number
 
 
 def commands_within_limits(

@@ -25,7 +25,7 @@ from tarsus.load.contact import GRAVITY, checked_contacts, upward
 from tarsus.load.payload import Payload, as_payload
 from tarsus.load.torque import joint_torques
 from tarsus.representation import represented
-from tarsus.robot.robot import Robot
+from tarsus.robot.robot import Robot, require_robot
 
 if TYPE_CHECKING:
     from jaxtyping import Bool, Float
@@ -146,6 +146,7 @@ def contact_forces_with_friction(
     TarsusError
         If the solver does not converge.
     """
+    require_robot(robot)
     robot.require_masses()
     carried = as_payload(payload)
     strength, axes = upward(gravity)

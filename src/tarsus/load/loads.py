@@ -19,7 +19,7 @@ from tarsus.load.inverse_dynamics import motion_torques
 from tarsus.load.payload import Payload, as_payload
 from tarsus.load.servo_limits import at_supply, utilisation
 from tarsus.representation import Rows, represented
-from tarsus.robot.robot import JOINTS, Robot, require_robot
+from tarsus.robot.robot import JOINTS, Robot, require_leg_number, require_robot
 
 if TYPE_CHECKING:
     from jaxtyping import Float, Int
@@ -193,7 +193,14 @@ class JointLoads:
         ----------
         leg, joint : int
             Indices of the joint.
+
+        Raises
+        ------
+        InputError
+            If there is no such joint.
         """
+        require_leg_number("cause", leg, self.robot.legs)
+        _require_joint("cause", joint)
         sample = int(self.peak_sample[leg, joint])
         codes = self.robot.leg_codes
         standing = [code for code, contact in zip(codes, self.motion.contacts[sample], strict=True) if contact]
@@ -210,7 +217,13 @@ class JointLoads:
         ----------
         joint : int
             0 coxa, 1 femur, 2 tibia.
+
+        Raises
+        ------
+        InputError
+            If there is no such joint.
         """
+        _require_joint("worst", joint)
         return int(self.peak[:, joint].argmax())
 
     def to_dict(self) -> dict[str, Any]:
@@ -259,6 +272,11 @@ def _floats(values: Any) -> Float[np.ndarray, "... legs 3"]:
 def _number(value: float) -> float | None:
     """Return a number, or None if it is not finite: JSON has no NaN or infinity."""
     return float(value) if np.isfinite(value) else None
+
+
+def _require_joint(name: str, joint: object) -> None:
+    if joint not in range(len(JOINTS)):
+        raise InputError(f"{name}: a leg has no joint {joint!r}; its joints are 0 coxa, 1 femur, 2 tibia")
 
 
 def joint_loads(

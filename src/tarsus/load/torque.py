@@ -11,7 +11,7 @@ from tarsus.kinematics.mass import point_masses
 from tarsus.kinematics.pose import Pose
 from tarsus.load.contact import GRAVITY, contact_forces, upward
 from tarsus.load.payload import Payload
-from tarsus.robot.robot import Robot
+from tarsus.robot.robot import Robot, require_robot
 
 if TYPE_CHECKING:
     from jaxtyping import Bool, Float
@@ -65,6 +65,7 @@ def joint_torques(
     InputError
         If a shape is wrong, a value is not finite, no foot is on the ground, or gravity is 0.
     """
+    require_robot(robot)
     robot.require_masses()
     strength, axes = upward(gravity)
     points = forward_kinematics(robot, angles)

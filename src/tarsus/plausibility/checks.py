@@ -12,7 +12,7 @@ from tarsus.plausibility.mirror import position_warnings
 from tarsus.plausibility.names import name_warnings
 from tarsus.plausibility.servos import servo_warnings
 from tarsus.plausibility.warning import PlausibilityWarning
-from tarsus.robot.robot import Robot
+from tarsus.robot.robot import Robot, require_robot
 
 __all__ = ["plausibility_warnings"]
 
@@ -38,6 +38,7 @@ def plausibility_warnings(robot: Robot) -> tuple[PlausibilityWarning, ...]:
     InputError
         If the robot is a batch of designs.
     """
+    require_robot(robot)
     if robot.batch_shape:
         raise InputError(f"plausibility is checked for a single robot, not for a batch {robot.batch_shape} of designs")
     size = Dimensions.of(robot.item(()))

@@ -11,7 +11,7 @@ from tarsus.gait.plan import plan_walk
 from tarsus.gait.stroke import max_stroke
 from tarsus.kinematics.stance import default_stance, default_swing_height
 from tarsus.representation import represented
-from tarsus.robot.robot import Robot
+from tarsus.robot.robot import Robot, require_robot
 
 __all__ = ["NO_STROKE", "GaitTrial", "try_gaits"]
 
@@ -69,6 +69,7 @@ def try_gaits(robot: Robot) -> tuple[GaitTrial, ...]:
     InputError
         If the robot is a batch of designs.
     """
+    require_robot(robot)
     if robot.batch_shape:
         raise InputError(f"gaits are tried for a single robot, not for a batch {robot.batch_shape} of designs")
     gaits = _gaits(robot.legs)

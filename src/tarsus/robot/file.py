@@ -10,13 +10,13 @@ from typing import Any
 
 from pydantic import ValidationError
 
-from tarsus.errors import RobotFileError, nearest_name
+from tarsus.errors import InputError, RobotFileError, nearest_name
 from tarsus.robot.build import build_robot
 from tarsus.robot.document import decimal_document, plain
 from tarsus.robot.parse import parse_toml
 from tarsus.robot.preset_names import PRESETS, preset_names
 from tarsus.robot.problems import problems_of
-from tarsus.robot.robot import Robot
+from tarsus.robot.robot import Robot, require_robot
 from tarsus.robot.schema import RobotFile
 from tarsus.robot.special_file import is_pipe_or_device
 from tarsus.robot.writer import toml_string, toml_text
@@ -52,12 +52,14 @@ def load_robot(name_or_path: str | os.PathLike[str]) -> Robot:
 
     Raises
     ------
+    InputError
+        If it is neither a name nor a path.
     RobotFileError
         If there is no such robot, its file can't be read, or something in it is wrong; each line of the message names a
         key, its value and what is allowed.
     """
-    if name_or_path in list_robots():
-        return _load_preset(str(name_or_path))
+    if isinstance(name_or_path, str) and name_or_path in list_robots():
+        return _load_preset(name_or_path)
     return robot_from_text(file_text(name_or_path), where=str(Path(name_or_path)))
 
 
@@ -71,9 +73,13 @@ def file_text(name_or_path: str | os.PathLike[str]) -> str:
 
     Raises
     ------
+    InputError
+        If it is neither a name nor a path.
     RobotFileError
         If there is no such robot, or its file can't be read.
     """
+    if not isinstance(name_or_path, str | os.PathLike):
+        raise InputError(f"{name_or_path!r} is no robot's name or path; the presets are {', '.join(list_robots())}")
     return _read(PRESETS / f"{name_or_path}.toml" if name_or_path in list_robots() else Path(name_or_path))
 
 
@@ -117,6 +123,7 @@ def robot_to_dict(robot: Robot) -> dict[str, Any]:
     RobotFileError
         If the robot is a batch of designs.
     """
+    require_robot(robot)
     document: dict[str, Any] = plain(decimal_document(robot))
     return document
 
@@ -173,6 +180,7 @@ def save_robot(robot: Robot, path: str | os.PathLike[str]) -> None:
     RobotFileError
         If it can't be written, or the robot is a batch of designs or has a value that no robot file may have.
     """
+    require_robot(robot)
     text = robot_text(robot)
     try:
         Path(path).write_bytes(text.encode())

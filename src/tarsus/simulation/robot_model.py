@@ -148,6 +148,7 @@ def model_assumptions(robot: Robot) -> tuple[str, ...]:
     robot : Robot
         A single robot.
     """
+    require_robot(robot)
     lines = [
         f"inertia of a link: that of a uniform box as long as the link, {1000 * SECTION:g} mm wide and high",
         "inertia of the body: that of a uniform box",

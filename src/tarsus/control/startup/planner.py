@@ -199,6 +199,7 @@ def fold(
     TarsusError
         If the robot does not lie on its belly.
     """
+    require_robot(robot)
     limits = joint_limits(robot, joint_speed, joint_acceleration, share=SERVO_SPEED_SHARE)
     lying = lying_state(over_feet(robot), angles, limits, purpose="folding its legs")
     return lying.move_legs("fold", folded_pose(robot), landed=False).sequence(robot)

@@ -12,7 +12,7 @@ from tarsus.control.startup.initial_state import SERVO_SPEED_SHARE, lying_state,
 from tarsus.kinematics.leg_path import LegFreeSpace
 from tarsus.representation import represented
 from tarsus.robot.joint_limits import joint_limits
-from tarsus.robot.robot import JOINTS, Robot
+from tarsus.robot.robot import JOINTS, Robot, require_robot
 
 if TYPE_CHECKING:
     from jaxtyping import Float
@@ -67,6 +67,7 @@ def power_off_order(robot: Robot, angles: Float[Array, "legs 3"]) -> PowerOffOrd
     TarsusError
         If the robot does not lie on its belly.
     """
+    require_robot(robot)
     robot = over_feet(robot)
     state = lying_state(robot, angles, joint_limits(robot, share=SERVO_SPEED_SHARE), purpose="switching its joints off")
     drop = np.zeros((robot.legs, 3))

@@ -7,6 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from tarsus.arrays import require_float
 from tarsus.control.incremental import Incremental, complete
 from tarsus.control.limitation import Cause, Limitation, LimitationKind
 from tarsus.control.transition.feasible_fraction import (
@@ -24,7 +25,7 @@ from tarsus.errors import InputError, UnreachableError
 from tarsus.gait.stance.stability import StabilityCheck, support_sets
 from tarsus.gait.stance.stance_geometry import sway_extremes
 from tarsus.gait.stance.velocity_limits import VelocityLimits, with_stroke_limits
-from tarsus.gait.walk_setup import WalkSetup, require_float, require_number
+from tarsus.gait.walk_setup import WalkSetup, require_number
 from tarsus.robot.joint_limits import JointLimits
 from tarsus.robot.robot import Robot
 

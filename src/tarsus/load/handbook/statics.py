@@ -19,7 +19,7 @@ from tarsus.load.contact import contact_forces
 from tarsus.load.handbook.comparison import ACCELERATING, STANDING, SWINGING, WALKING, Comparison, ComparisonRow
 from tarsus.load.handbook.method import Handbook, handbook
 from tarsus.load.torque import joint_torques
-from tarsus.robot.robot import JOINTS, Robot
+from tarsus.robot.robot import JOINTS, Robot, require_robot
 
 if TYPE_CHECKING:
     from jaxtyping import Bool, Float
@@ -74,6 +74,7 @@ def compare_with_statics(
     UnreachableError
         If a foot of the walk is out of reach.
     """
+    require_robot(robot)
     gait = Gait.named(gait, legs=robot.legs) if isinstance(gait, str) else gait
     hand = handbook(
         robot,
