@@ -712,6 +712,17 @@ def test_near_the_ground_feet_go_down_more_slowly_the_later_contacts_are_known(l
     assert searches == pytest.approx(-min(fastest, max(0.15, over / 0.1)))
 
 
+@pytest.mark.parametrize(
+    ("slow", "over", "speed"), [(0.0, 0.006, 0.24), (1.0, 0.006, 0.09), (0.5, 0.006, 0.16), (1.0, 0.008, 0.23)]
+)
+def test_feet_that_slow_down_do_so_just_over_the_expected_ground(slow, over, speed):
+    felt = FeltInputs([], [], [True] * 2, 0.0, 0.0, (0.0, 0.0), 0j, 0.0, 0j, 0.8, 1.0, 0.03, 1.0, 0.0, {})
+    under, foot = GroundUnder(0.0, lowest=-0.2, highest=0.2), FeltFoot(top=0.06, top_phase=0.42)
+    _, swings = _swinging(over, foot, under, felt._replace(slow_contact=slow), 0.1, (0.9, 0.5, 0.0, 0j))
+    # A little sooner at its top, the foot has 0.52 of the swing for the way down instead of 0.5.
+    assert swings.speed == pytest.approx(-speed, abs=0.004)
+
+
 def test_feet_whose_contacts_are_known_late_have_travelled_sooner():
     shares = [travel_share(far, late) for far, late in ((0.3, 0.0), (1.0, 0.0), (1.0, 0.1), (1.0, 0.9))]
     assert shares == pytest.approx([0.75, 0.92, 0.82, 0.5])

@@ -9,6 +9,7 @@ import pytest
 
 from gait_robots import preset
 from tarsus.control.limitation import LimitationKind
+from tarsus.control.pose import slope_stance
 from tarsus.control.pose.posture_feedback import BodyMove, PostureFeedback
 from tarsus.control.pose.slope_stance import SlopeStance
 from tarsus.control.readings import SensorReadings
@@ -99,10 +100,10 @@ def test_feet_come_closer_to_the_height_of_the_middle_of_the_body_on_slopes(name
     rest = feet[:, 0] + 1j * feet[:, 1]
     uphill = np.exp(1j * direction)
     before = (rest * uphill.conjugate()).real
-    stance.step(FootPlane(0.0, 0.09 * uphill.real, 0.09 * uphill.imag), rest, 0.0, walks=True)
+    stance.step(FootPlane(0.0, 0.09 * uphill.real, 0.09 * uphill.imag), rest, 0.0, 0.04, walks=True)
     assert not stance.shift.any()
     assert stance.not_downhill(-0.1 * uphill) == -0.1 * uphill
-    stance.step(FootPlane(0.0, 0.3 * uphill.real, 0.3 * uphill.imag), rest, 0.0, walks=True)
+    stance.step(FootPlane(0.0, 0.3 * uphill.real, 0.3 * uphill.imag), rest, 0.0, 0.04, walks=True)
     after = ((rest + stance.shift) * uphill.conjugate()).real
     assert (np.abs(after) < np.abs(before) + 0.01).all()
     assert np.ptp(after) < (0.8 if direction in (0.0, math.pi) else 0.97) * np.ptp(before)
@@ -115,10 +116,25 @@ def test_feet_come_closer_to_the_height_of_the_middle_of_the_body_on_slopes(name
     assert stance.not_downhill(0.1 * uphill) == 0.1 * uphill
     # A robot that stands does not step for little.
     here = stance.shift
-    stance.step(FootPlane(0.0, 0.28 * uphill.real, 0.28 * uphill.imag), rest, 0.0, walks=False)
+    stance.step(FootPlane(0.0, 0.28 * uphill.real, 0.28 * uphill.imag), rest, 0.0, 0.04, walks=False)
     assert stance.shift is here
-    stance.step(FootPlane(), rest, 0.0, walks=False)
+    stance.step(FootPlane(), rest, 0.0, 0.04, walks=False)
     assert not stance.shift.any()
+
+
+@pytest.mark.parametrize(
+    ("slope", "period", "least", "most"), [(0.3, math.inf, 1.0, 1.0), (0.17, math.inf, 0.0, 0.0), (0.3, 1.0, 0.0, 0.0)]
+)
+def test_feet_come_down_slowly_on_steep_slopes_that_last(slope, period, least, most):
+    stance, dt = SlopeStance(preset("strider")), 0.04
+    rest, seen = np.zeros(6, dtype=complex), []
+    for tick in range(200):
+        # Over rough ground the slope goes up and down.
+        stance.step(FootPlane(0.0, slope * math.cos(math.tau * tick * dt / period), 0.0), rest, 0.0, dt, walks=True)
+        seen.append(stance.lasting)
+    assert seen[0] == 0.0
+    assert least <= min(seen[100:])
+    assert max(seen[100:]) <= most
 
 
 @pytest.mark.parametrize(("slope", "most", "longer"), [(0.0, 1.25, 1.0), (0.2, 1.25, 1.125), (0.2, 1.0, 1.0)])
@@ -217,6 +233,31 @@ def test_a_robot_walks_up_a_slope_of_twenty_degrees_level_and_stands_on_it():
     walk = controller._activity.controller
     assert walk.walk_state is WalkState.STANDING
     assert np.abs(walk._walk.ground.body.stance.shift).max() > 0.05
+
+
+def walked_down(monkeypatch, *, slowly):
+    """Return RMS tilt [rad] and slip [m/m] of phantomx down a ramp of 20 degrees."""
+    robot, dt = preset("phantomx"), 0.01
+    if not slowly:
+        monkeypatch.setattr(slope_stance, "_LASTS", math.inf)
+    plant = SimulatedPlant(robot, terrain=terrain.Ramp(slope=math.radians(-20), start=0.35), servos="catalogue")
+    controller, tilts, slip = RobotController(robot), [], 0.0
+    plant.start(controller.output)
+    speed = 0.5 * WalkController(robot).top_speed((1.0, 0.0, 0.0))
+    for _ in range(round(1.2 / speed / dt)):
+        controller.step((speed, 0.0, 0.0), dt, plant.step(controller.output, dt))
+        tilts.append(math.hypot(*plant.state.body.rpy[:2]))
+        slip += float(plant.state.slip_speeds.mean()) * dt
+    return math.sqrt(np.mean(np.square(tilts))), slip / plant.state.body.position[0]
+
+
+@pytest.mark.no_cover
+def test_feet_that_come_down_slowly_on_a_slope_slip_and_tilt_the_body_less(monkeypatch):
+    tilt, slip = walked_down(monkeypatch, slowly=True)
+    fast_tilt, fast_slip = walked_down(monkeypatch, slowly=False)
+    assert slip < 0.035
+    assert slip < 0.9 * fast_slip
+    assert tilt < 0.9 * fast_tilt
 
 
 @pytest.mark.no_cover

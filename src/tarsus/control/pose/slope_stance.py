@@ -21,6 +21,9 @@ _LEAST, _MOST = math.radians(6.0), math.radians(14.0)
 # How far legs turn about their coxa axes on a slope along the body [rad]: across it, feet would come too close
 # together; how far feet are drawn in, over the length of femur and tibia.
 _TURNED, _DRAWN_IN = math.radians(30.0), 0.13
+# Slopes from which on, and up to which, feet come down slowly [m/m], once they have lasted for so long [s]: feet push
+# on after contact, throw the body up, and slide as it comes down again. On rough ground, slopes do not last.
+_SLOW_FROM, _SLOW, _LASTS = 0.18, 0.27, 1.0
 # Cycle time on a slope on which the stance changes, over that on level ground: feet slide down a slope with each step,
 # and longer ones are fewer.
 _LONGER = 1.125
@@ -48,12 +51,14 @@ class SlopeStance:
         By how much the rest footholds move, in the heading frame [m].
     uphill : complex
         The slope in the heading frame [m/m]; 0 where the stance is that of level ground.
+    lasting : float
+        How far feet slow down before contact, as the slope lasts, 0 to 1.
     """
 
     def __init__(self, robot: Robot, *, scale: float = 1.0) -> None:
         g, size = robot.geometry, robot.body_size
         self.shift: Complex[np.ndarray, "legs"] = np.zeros(robot.legs, dtype=complex)
-        self.uphill, self._scale = 0j, scale
+        self.uphill, self.lasting, self._mean, self._scale = 0j, 0.0, 0j, scale
         self._mounts: Complex[np.ndarray, "legs"] = np.asarray(g.mount_x + 1j * g.mount_y)
         self._drawn_in: Float[np.ndarray, "legs"] = np.asarray(_DRAWN_IN * (g.femur + g.tibia))
         self.half = (0.0, 0.0, 0.0) if size is None else tuple((np.asarray(size) / 2).tolist())
@@ -63,7 +68,9 @@ class SlopeStance:
         """Cycle time over that on level ground."""
         return _LONGER if self.uphill else 1.0
 
-    def step(self, level: FootPlane, rest: Complex[np.ndarray, "legs"], drawn_in: float, *, walks: bool) -> None:
+    def step(
+        self, level: FootPlane, rest: Complex[np.ndarray, "legs"], drawn_in: float, dt: float, *, walks: bool
+    ) -> None:
         """Follow the slope, and the roughness.
 
         Parameters
@@ -72,12 +79,14 @@ class SlopeStance:
             The plane of the feet as a level body sees it.
         rest : complex array, shape (legs,)
             Rest footholds on level ground, in the heading frame [m].
-        drawn_in : float
-            How far all feet are drawn in for rough ground [m].
+        drawn_in, dt : float
+            How far all feet are drawn in for rough ground [m]; time since the last call [s].
         walks : bool
             Whether the body is to move: feet that stand slide downhill as they step.
         """
         uphill = complex(level.slope_x, level.slope_y)
+        self._mean += min(dt / _LASTS, 1.0) * (uphill - self._mean)
+        self.lasting = min(max((abs(self._mean) - _SLOW_FROM) / (_SLOW - _SLOW_FROM), 0.0), 1.0)
         share = min(max((math.atan(abs(uphill)) - _LEAST) / (_MOST - _LEAST), 0.0), 1.0)
         self.uphill = uphill if share else 0j
         if not share and not drawn_in and not self.shift.any():

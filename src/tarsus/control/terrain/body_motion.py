@@ -170,7 +170,7 @@ class BodyMotion:
         if self.tilt is not None or self.slope.refuses:
             self.slope.step(level, complex(*tick.twist[:2].tolist()), math.hypot(*self.off))
         if self.tilt is not None:
-            self.stance.step(level, rest - self.stance.shift, self.roughness.drawn_in, walks=not rests)
+            self.stance.step(level, rest - self.stance.shift, self.roughness.drawn_in, dt, walks=not rests)
         self._fit_height(state, over, footing.down, bears, dt)
         self.heading.step(valid, turning, dt, rests=rests)
         self.drift = self.stance.not_downhill(self.odometry.step(valid, bears, commanded, dt))

@@ -219,6 +219,7 @@ class FeltGround:
             beside=self.ground.beside,
             exact=bool(self.ground.crossing),
             in_air=self.condition.in_air,
+            slow_contact=body.stance.lasting,
         )
 
     def _find_ground(self, state: GaitState, footing: Footing, footholds: FootholdTransfer, dt: float) -> list[bool]:

@@ -116,6 +116,8 @@ class FeltInputs(NamedTuple):
         Whether feet are to keep to their paths, as one of them crosses a hole.
     redundant : bool
         Whether more than three feet stand at any time of the gait.
+    slow_contact : float
+        How far feet slow down just over the expected ground, 0 to 1.
     """
 
     under: list[GroundUnder | None]
@@ -137,6 +139,7 @@ class FeltInputs(NamedTuple):
     scale: float = 1.0
     exact: bool = False
     redundant: bool = False
+    slow_contact: float = 0.0
 
 
 def travel_share(far: float, late: float) -> float:

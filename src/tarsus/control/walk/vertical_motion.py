@@ -30,6 +30,8 @@ _RISING_FIRST, _STEEP_TOP_PHASE = 0.15, 0.35
 # Fraction of a swing in which a foot goes down from its top to the expected ground, on rough ground, and at least where
 # contact is known late.
 _DESCENT, _ROUGH_DESCENT, _SHORTEST_DESCENT = 0.5, 0.4, 0.2
+# That fraction, and the speed, of a foot that slows down before contact [m/s].
+_SLOW_DESCENT, _SLOW_CONTACT = 0.52, 0.09
 # How far below the expected ground feet go where it is rough [m].
 _ROUGH = 0.006
 # How much of its way down a slope a foot at its top has behind it.
@@ -46,8 +48,8 @@ _LOSING, _OTHERS, _NEAR = 0.04, 3, 0.004
 _LOSING_ONE_OF_MANY, _GOES_ON = 0.02, 0.5
 # Time in which a foot that should stand goes down to the expected ground [s].
 _SEARCH_TIME = 0.1
-# From how high over the expected ground on a foot whose contact is known late goes down more slowly, and how far it
-# goes into the ground at most until then [m], besides so much of its depth below the expected ground.
+# From how high over the expected ground on a foot slows down, and how far one whose contact is known late goes into the
+# ground at most until then [m], besides so much of its depth below the expected ground.
 _NEARS, _PRESSED, _PRESSED_DEEP = 0.007, 0.004, 0.4
 # Room over known ground on the way of a foot that goes down [m].
 _OVER = 0.015
@@ -164,7 +166,8 @@ def _swinging(
     phase, swing_time, lifted_at, place = swing
     speed, acceleration, top, top_phase, slide, drawn_back, bow = foot
     rough = min(felt.depth / (felt.scale * _ROUGH), 1.0)
-    part = max(_DESCENT + rough * (_ROUGH_DESCENT - _DESCENT) - felt.late / swing_time, _SHORTEST_DESCENT)
+    part = _DESCENT + rough * (_ROUGH_DESCENT - _DESCENT)
+    part = max(part + felt.slow_contact * (_SLOW_DESCENT - part) - felt.late / swing_time, _SHORTEST_DESCENT)
     if math.isnan(top) or (phase < top_phase and drawn_back is None):
         # No higher than the foot can be there in time, and down again by the end of its swing.
         top_phase = _TOP_PHASE + rough * (_ROUGH_TOP_PHASE - _TOP_PHASE)
@@ -186,7 +189,10 @@ def _swinging(
         height, speed, acceleration = quintic((height, speed, acceleration), top, whole, time / whole)
         return height, FeltFoot(speed, acceleration, top, top_phase, slide, drawn_back, bow)
     descent = (top - under.expected + felt.depth) / (part * swing_time) * felt.pace
-    fastest = min(max(felt.scale * _LOWERING, descent), felt.lowering, _fastest_contact(height - under.expected, felt))
+    over, fastest = height - under.expected, max(felt.scale * _LOWERING, descent)
+    if over < felt.scale * _NEARS:
+        fastest += felt.slow_contact * (felt.scale * _SLOW_CONTACT - fastest)
+    fastest = min(fastest, felt.lowering, _fastest_contact(over, felt))
     after = _towards(speed, -fastest, _FOOT_ACCELERATION * dt)
     # Over higher ground on its way it stays.
     lowest = under.lowest
