@@ -9,6 +9,7 @@ import pytest
 
 from gait_robots import preset
 from tarsus.control.limitation import LimitationKind
+from tarsus.control.limiter.protocol import TwistGrant, TwistRequest
 from tarsus.control.pose import slope_stance
 from tarsus.control.pose.posture_feedback import BodyMove, PostureFeedback
 from tarsus.control.pose.slope_stance import SlopeStance
@@ -310,44 +311,60 @@ def test_a_robot_walks_sideways_up_a_slope_of_twenty_degrees():
 def test_a_slippery_slope_is_refused_with_its_angle_and_the_way_back_stays_open():
     limit = SlopeLimit(0.8)
     steep, gentle = (FootPlane(0.0, math.tan(math.radians(angle)), 0.0) for angle in (27.0, 15.0))
-    limit.step(gentle, 0.1 + 0j)
+    limit.step(gentle, 0.1 + 0j, 0.04)
     assert not limit.refuses
-    limit.step(steep, 0.1 + 0j)
+    limit.step(steep, 0.1 + 0j, 0.04)
     assert limit.refuses
     assert "27 deg" in limit.reason
-    limit.step(FootPlane(0.0, math.tan(limit.steepest - 0.01), 0.0), 0.1 + 0.02j)
+    limit.step(FootPlane(0.0, math.tan(limit.steepest - 0.01), 0.0), 0.1 + 0.02j, 0.04)
     assert limit.refuses
     assert "27 deg" in limit.reason
-    limit.step(steep, -0.1 + 0j)
+    limit.step(steep, -0.1 + 0j, 0.04)
     assert not limit.refuses
-    limit.step(steep, 0.1 + 0j)
+    limit.step(steep, 0.1 + 0j, 0.04)
     assert limit.refuses
-    limit.step(gentle, 0.1 + 0j)
+    limit.step(gentle, 0.1 + 0j, 0.04)
     assert not limit.refuses
     # Down a slope that is too steep, down is refused, and up again is not.
-    limit.step(FootPlane(0.0, -0.6, 0.0), 0.1 + 0j)
+    limit.step(FootPlane(0.0, -0.6, 0.0), 0.1 + 0j, 0.04)
     assert limit.refuses
-    limit.step(FootPlane(0.0, -0.6, 0.0), -0.1 + 0j)
+    limit.step(FootPlane(0.0, -0.6, 0.0), -0.1 + 0j, 0.04)
     assert not limit.refuses
 
 
-def test_a_body_that_legs_do_not_keep_level_waits_on_a_slope_until_it_is_level_again():
-    limit, up, down = SlopeLimit(0.8), FootPlane(0.0, 0.3, 0.0), -0.1 + 0j
-    limit.step(up, 0.1 + 0j, math.radians(11.0))
-    assert not limit.refuses
-    limit.step(up, 0.1 + 0j, math.radians(13.0))
-    assert limit.refuses
-    assert "off by 13 deg, at most 12 deg" in limit.reason
+def test_a_body_that_legs_do_not_keep_level_stops_on_a_slope_until_it_is_level_again():
+    limit, up, dt, state = SlopeLimit(0.8), FootPlane(0.0, 0.3, 0.0), 0.04, WalkController(preset("strider"))._tick.gait
+
+    def granted(off, speed=0.1, plane=up):
+        limit.step(plane, complex(speed), dt, off=math.radians(off))
+        grant = limit.limit(TwistRequest((speed, 0.0, 0.0), dt, state, np.zeros(3)), TwistGrant())
+        assert not limit.refuses
+        return grant.fraction, [found.cause for found in grant.limitations]
+
+    assert granted(11.0) == (1.0, [])
+    assert not limit.refused
+    fraction, causes = granted(13.0)
+    assert fraction == 0.0
+    assert "off by 13 deg, at most 12 deg" in causes[0]
+    assert limit.refused
+    # No foot lifts off while it tips further; then they step.
+    assert limit.holds
+    for _ in range(60):
+        assert granted(13.0)[0] == 0.0
+    assert not limit.holds
     # It stays so while it levels, and the way back is open.
-    limit.step(up, 0.1 + 0j, math.radians(9.0))
-    assert limit.refuses
-    limit.step(up, down, math.radians(9.0))
-    assert not limit.refuses
-    limit.step(up, 0.1 + 0j, math.radians(7.0))
-    assert not limit.refuses
+    assert granted(9.0)[0] == 0.0
+    assert granted(9.0, -0.1) == (1.0, [])
+    assert granted(9.0)[0] == 0.0
+    assert granted(7.0) == (1.0, [])
     # On level ground it is an obstacle that tilts the body.
-    limit.step(FootPlane(0.0, 0.1, 0.0), 0.1 + 0j, math.radians(20.0))
-    assert not limit.refuses
+    assert granted(20.0, plane=FootPlane(0.0, 0.1, 0.0)) == (1.0, [])
+    # Where feet slip, none lifts off but on the way back.
+    for _ in range(60):
+        assert granted(13.0, plane=FootPlane(0.0, 0.6, 0.0))[0] == 0.0
+    assert limit.holds
+    assert granted(13.0, -0.1, plane=FootPlane(0.0, 0.6, 0.0)) == (1.0, [])
+    assert not limit.holds
 
 
 def test_a_robot_that_its_legs_do_not_keep_level_does_not_tip_over_backwards():

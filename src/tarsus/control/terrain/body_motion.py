@@ -167,8 +167,8 @@ class BodyMotion:
         self.ground.step(feet, self.tilt, state, dt, drift=self.drift, turning=back)
         level = self.ground.plane.levelled(self.tilt)
         # The way back stays open without an attitude, too.
-        if self.tilt is not None or self.slope.refuses:
-            self.slope.step(level, complex(*tick.twist[:2].tolist()), math.hypot(*self.off))
+        if self.tilt is not None or self.slope.refused:
+            self.slope.step(level, complex(*tick.twist[:2].tolist()), dt, off=math.hypot(*self.off))
         if self.tilt is not None:
             self.stance.step(level, rest - self.stance.shift, self.roughness.drawn_in, dt, walks=not rests)
         self._fit_height(state, over, footing.down, bears, dt)

@@ -284,7 +284,7 @@ class FeltGround:
         missing, lifts, fallen = self.missing, any(due or ()), self.condition.fallen
         legs = [leg for leg, on in enumerate(footing.down) if on and not (leg in missing.places or (due and due[leg]))]
         stays = self.support.holds(legs, footing, anew=not self.body.since)
-        held = due is None or (stays and not (lifts and any((self.body.slope.refuses, missing.refuses, missing.tips))))
+        held = due is None or (stays and not (lifts and any((self.body.slope.holds, missing.refuses, missing.tips))))
         stays, lifts = held and not fallen, lifts and not fallen
         self.support.step(stays=stays, lifts=lifts, dt=dt, swing_time=swing_time, most=missing.pace)
 

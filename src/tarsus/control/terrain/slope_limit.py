@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import math
 
+from tarsus.control.limitation import Limitation, LimitationKind
+from tarsus.control.limiter.protocol import TwistGrant, TwistRequest
 from tarsus.gait.foot_plane import FootPlane
 
 __all__ = ["SlopeLimit"]
@@ -12,8 +14,10 @@ __all__ = ["SlopeLimit"]
 _PRELOAD = 0.32
 # How much less steep a slope is that is walked again [rad].
 _HYSTERESIS = math.radians(2.0)
-# Slope from which on a body waits that is so far off its attitude, until it is less so [rad].
+# Slope from which on a body stops that is so far off its attitude, until it is less so [rad].
 _SLOPES, _OFF, _LEVELLED = math.radians(8.0), math.radians(12.0), math.radians(8.0)
+# How much farther off than its mean over so long [s] a body is that tips: no foot lifts off then [rad].
+_TIPS, _MEAN = math.radians(0.5), 0.6
 
 
 class SlopeLimit:
@@ -21,7 +25,7 @@ class SlopeLimit:
 
     Feet slip where the slope's tangent and the friction that legs use up against each other exceed the coefficient of
     friction. A body that legs at the end of their reach no longer keep level shifts its weight downhill, which tilts it
-    further: it waits until it is level again.
+    further: it stops, and its feet step to where legs reach until it is level again.
 
     Parameters
     ----------
@@ -35,27 +39,29 @@ class SlopeLimit:
     slope : float
         The slope under the feet; where motion is refused, the steepest one since then [rad].
     refuses : bool
-        Whether the motion is refused.
+        Whether the motion is refused, as feet slip.
     """
 
     def __init__(self, friction: float) -> None:
         self.steepest = math.atan(max(friction - _PRELOAD, 0.0))
         self.slope, self.refuses = 0.0, False
-        # Whether the body is too far off its attitude, and how far it is [rad].
-        self._tilts, self._off, self._refused = False, 0.0, 0.0
+        # Whether the body is too far off its attitude, how far it is, and in the mean [rad].
+        self._tilts, self._off, self._mean, self._refused = False, 0.0, 0.0, 0.0
+        self._uphill, self._stops = 0j, False
 
-    def step(self, level: FootPlane, velocity: complex, off: float = 0.0) -> None:
+    def step(self, level: FootPlane, velocity: complex, dt: float, *, off: float = 0.0) -> None:
         """Decide on a motion.
 
         Parameters
         ----------
         level, velocity : FootPlane, complex
-            The plane of the feet as a level body sees it; the velocity that is asked for [m/s].
-        off : float
-            By how much the body is off the attitude to keep [rad].
+            The plane of the feet as a level body sees it; the velocity that is followed [m/s].
+        dt, off : float
+            Time since the last call [s]; by how much the body is off the attitude to keep [rad].
         """
-        slope = math.atan(math.hypot(level.slope_x, level.slope_y))
-        rises = velocity.real * level.slope_x + velocity.imag * level.slope_y
+        self._uphill = complex(level.slope_x, level.slope_y)
+        slope, rises = math.atan(abs(self._uphill)), self._rises(velocity)
+        self._mean += min(dt / _MEAN, 1.0) * (off - self._mean)
         self._off, self._tilts = off, slope > _SLOPES and off > (_LEVELLED if self._tilts else _OFF)
         if slope < self.steepest - _HYSTERESIS and not self._tilts:
             self._refused = 0.0
@@ -63,13 +69,34 @@ class SlopeLimit:
             self._refused = rises
         self.slope = max(self.slope, slope) if self._refused else slope
         # The way back stays open.
-        self.refuses = self._refused * rises > 0
+        self.refuses = self._refused * rises > 0 and not self._tilts
+
+    def limit(self, request: TwistRequest, grant: TwistGrant) -> TwistGrant:
+        """Return the grant, without a twist further up or down while the body is off level: feet step on the spot."""
+        self._stops = self._tilts and self._refused * self._rises(complex(*request.twist[:2])) > 0
+        if self._stops:
+            return grant.at_most(0.0, Limitation(kind=LimitationKind.GROUND, cause=self.reason))
+        return grant
+
+    def _rises(self, velocity: complex) -> float:
+        return (velocity * self._uphill.conjugate()).real
+
+    @property
+    def refused(self) -> bool:
+        """Whether motion further up or down is refused."""
+        return self._refused != 0.0
+
+    @property
+    def holds(self) -> bool:
+        """Whether no foot is to lift off: feet would slip, or the body tips."""
+        tips = self._off > self._mean + _TIPS or self.slope > self.steepest - _HYSTERESIS
+        return self.refuses or (self._stops and tips)
 
     @property
     def reason(self) -> str:
         """Why motion is refused."""
         if self._tilts:
-            # One that has waited goes on once it is less.
+            # One that has stopped goes on once it is less.
             off, most = math.degrees(self._off), math.degrees(_OFF if self._off > _OFF else _LEVELLED)
             return f"a slope on which legs do not keep the body level: off by {off:.0f} deg, at most {most:.0f} deg"
         steepest = f"the steepest one for their friction is {math.degrees(self.steepest):.0f} deg"

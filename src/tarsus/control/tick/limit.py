@@ -40,6 +40,7 @@ def twist_limiters(walk: WalkComponents) -> list[TwistLimiter]:
         LostTime(roughness.adaptation.catch_up, rate),
         walk.ground.missing,
         walk.ground.body.stopped,
+        walk.ground.body.slope,
         WorkspaceLimiter(
             walk.robot.leg_names, walk.transitions, lambda: (roughness.cycle_time(stance.cycle_time), roughness.speed)
         ),
