@@ -137,6 +137,30 @@ def test_a_walk_that_slows_down_says_for_which_foot_and_why():
     assert named(stepped(missing, [(1, 0.0, False, True)])) == [("LM", "an obstacle stops the foot")]
 
 
+def test_a_foot_of_a_robot_that_waits_at_a_hole_goes_no_further_down_where_that_is_raised():
+    missing = stepped(MissingGround(NAMES), [(0, 0.08, True, True)])
+    # That foot has to step back first.
+    limited(missing, 0.1, 0.0, 0.0)
+    assert not missing.is_raised(0.02)
+    stepped(missing, [], stands=[True] * 6)
+    assert missing.refuses
+    assert missing.is_raised(0.006)
+    assert not missing.is_raised(0.004)
+    missing.tips = 1.0 + 0j
+    assert not missing.is_raised(0.006)
+    missing.tips = 0j
+    limited(missing, -0.1, 0.0, 0.0)
+    assert not missing.is_raised(0.006)
+
+
+def test_a_robot_that_waits_at_an_edge_does_not_push_itself_up():
+    # It rocked on feet that lost contact and were lowered in turn, up to 9 degrees, and fell backwards by 42 degrees.
+    robot = tarsus.load_robot("phantomx")
+    walk = Walk(terrain.Step(rise=-0.3, start=0.540909), robot=robot)
+    walk.go(0.25 * tarsus.WalkController(robot).top_speed((1.0, 0.0, 0.0)), 23.0)
+    assert walk.tilt < np.radians(15)
+
+
 def test_a_foot_without_ground_steps_back_then_the_body_backs_off_and_then_the_foot_gives_up():
     missing = stepped(MissingGround(NAMES), [(0, 0.08, True, True)])
     first = missing.places[0]

@@ -268,13 +268,13 @@ class FeltGround:
     def _under(self, state: GaitState, leg: int, place: complex, *, down: bool) -> GroundUnder:
         """Return the ground under a foot in the air or without contact, here in the heading frame."""
         heading = cmath.exp(1j * state.yaw)
-        known = self.contacts.is_known(leg) and (down or self.contacts.lifted[leg])
-        searches = known and not (self.condition.in_air or self.missing.gives_up(leg))
+        known = not self.condition.in_air and self.contacts.is_known(leg) and (down or self.contacts.lifted[leg])
+        stays = self.missing.gives_up(leg) or (down and self.missing.is_raised(-sunk_at(place, self.body.off)))
         goal = place if down else state.in_heading(complex(state.foothold[leg]))
         reach, rests = self.body.reach, self._rests and self.support.held
         lowest = max(reach.lowest[leg], self.ground.at(goal) - _NEAR) if rests else reach.lowest[leg]
         straight, bowed = reach.highest_on_way(leg, place, goal)
-        room = (lowest if searches else None, straight)
+        room = (lowest if known and not stays else None, straight)
         found = self.ground.under(place, goal, state.elevation, room, clears=not self._loads.estimated)
         back = state.origin + self.missing.places[leg] * heading if leg in self.missing.places else None
         return found._replace(bow=heading * reach.bows[leg], bowed=state.elevation + bowed, place=back)

@@ -28,6 +28,8 @@ _SLOWS, _STANDS, _SLOWEST = 0.005, 0.02, 0.25
 _HELD_UP, _STEP, _LOW_STEP, _HELD, _LATER = 0.007, 0.5, 0.05, 0.3, 5.0
 # A foot that lifts the body by more stands on ground that is not felt: the robot does not tip towards it [m].
 _LIFTS = 0.008
+# A robot that waits on feet that lose contact in turn rocks: where it is raised by more, they are not lowered [m].
+_RAISED = 0.005
 # A foot where the robot is off its attitude by more does not step back: it holds the body, or is in the air by its tilt
 # [m].
 _LEANS = 0.02
@@ -121,6 +123,10 @@ class MissingGround:
     def gives_up(self, leg: int) -> bool:
         """Return whether a foot has found no ground at any place."""
         return self._tries[leg] > len(_BACK)
+
+    def is_raised(self, by: float) -> bool:
+        """Return whether a robot that waits at a hole is that much too high at a foot [m]: it goes no further down."""
+        return by > self._scale * _RAISED and self.refuses and not (self.tips or self.places)
 
     def tipped(self, leg: int, foot: complex) -> None:
         """Take note of an edge on which a leg rests: the robot has tipped at its foot, here in the heading frame."""
