@@ -75,6 +75,7 @@ truth: $(VENV)/.dev
 	$(BIN)/python docs/other_presets.py
 	$(BIN)/python docs/seen_ground.py
 	$(BIN)/python docs/cross_slopes.py
+	$(BIN)/python docs/put_down.py
 	$(BIN)/python docs/edges.py
 	$(BIN)/python docs/obstacles.py
 	$(BIN)/python docs/sensor_faults.py

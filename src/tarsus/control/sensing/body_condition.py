@@ -10,8 +10,8 @@ from tarsus.control.readings import RollPitch
 
 __all__ = ["BodyCondition"]
 
-# Without any contact for longer, the robot is in the air [s].
-_IN_AIR = 0.5
+# Without any contact for longer, the robot is in the air; once its feet have held it for so long, it is put down [s].
+_IN_AIR, _PUT_DOWN = 0.5, 0.2
 # Tilt from which on the robot has fallen, below which it stands again, and for how long [rad], [s].
 _FALLEN, _UPRIGHT, _LASTS = math.radians(45.0), math.radians(30.0), 0.2
 
@@ -30,7 +30,7 @@ class BodyCondition:
     """
 
     def __init__(self) -> None:
-        self.airborne = self.tilt = self._time = 0.0
+        self.airborne = self.tilt = self._time = self._held = 0.0
         self.fallen = self.carried = False
 
     @property
@@ -51,7 +51,8 @@ class BodyCondition:
             Time since the last tick [s]; whether the feet that touch hold the robot.
         """
         self.airborne = 0.0 if any(touching) else self.airborne + dt
-        self.carried = self.in_air or (self.carried and not held)
+        self._held = self._held + dt if held else 0.0
+        self.carried = self.in_air or (self.carried and self._held < _PUT_DOWN)
         if attitude is not None:
             self.tilt = math.acos(math.cos(attitude[0]) * math.cos(attitude[1]))
         changes = self.tilt < _UPRIGHT if self.fallen else self.tilt > _FALLEN

@@ -142,7 +142,7 @@ class FeltGround:
             state, self.body, self.missing, stopped=stopped, error=error, timing=timing, pace=pace
         )
         waits = self.missing.refuses and self.support.halts
-        if self.missing.tips or self.condition.in_air or waits:
+        if self.missing.tips or self.condition.carried or waits:
             state, swung = put_down(state, timing=timing, pace=pace)
             landed += swung
         return state, landed
@@ -281,11 +281,11 @@ class FeltGround:
 
     def _decide_on_support(self, footing: Footing, due: list[bool] | None, dt: float, swing_time: float) -> None:
         """Decide whether feet may lift off, and at which pace the walk goes on; None is due while the robot stands."""
-        missing, lifts, fallen = self.missing, any(due or ()), self.condition.fallen
+        missing, lifts, condition = self.missing, any(due or ()), self.condition
+        waits = any((self.body.slope.holds, condition.carried, missing.refuses, missing.tips))
         legs = [leg for leg, on in enumerate(footing.down) if on and not (leg in missing.places or (due and due[leg]))]
-        stays = self.support.holds(legs, footing, anew=not self.body.since)
-        held = due is None or (stays and not (lifts and any((self.body.slope.holds, missing.refuses, missing.tips))))
-        stays, lifts = held and not fallen, lifts and not fallen
+        stays = (self.support.holds(legs, footing, anew=not self.body.since) and not (lifts and waits)) or due is None
+        stays, lifts = stays and not condition.fallen, lifts and not condition.fallen
         self.support.step(stays=stays, lifts=lifts, dt=dt, swing_time=swing_time, most=missing.pace)
 
     @property

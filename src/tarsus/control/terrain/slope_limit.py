@@ -39,7 +39,7 @@ class SlopeLimit:
     slope : float
         The slope under the feet; where motion is refused, the steepest one since then [rad].
     refuses : bool
-        Whether the motion is refused, as feet slip.
+        Whether the motion is refused, as feet slip or the body tips.
     """
 
     def __init__(self, friction: float) -> None:
@@ -47,7 +47,7 @@ class SlopeLimit:
         self.slope, self.refuses = 0.0, False
         # Whether the body is too far off its attitude, how far it is, and in the mean [rad].
         self._tilts, self._off, self._mean, self._refused = False, 0.0, 0.0, 0.0
-        self._uphill, self._stops = 0j, False
+        self._uphill, self._stops, self._tips = 0j, False, False
 
     def step(self, level: FootPlane, velocity: complex, dt: float, *, off: float = 0.0) -> None:
         """Decide on a motion.
@@ -69,11 +69,14 @@ class SlopeLimit:
             self._refused = rises
         self.slope = max(self.slope, slope) if self._refused else slope
         # The way back stays open.
-        self.refuses = self._refused * rises > 0 and not self._tilts
+        self._tips = off > self._mean + _TIPS or slope > self.steepest - _HYSTERESIS
+        self.refuses = self._refused * rises > 0 and not self._stops
 
     def limit(self, request: TwistRequest, grant: TwistGrant) -> TwistGrant:
         """Return the grant, without a twist further up or down while the body is off level: feet step on the spot."""
-        self._stops = self._tilts and self._refused * self._rises(complex(*request.twist[:2])) > 0
+        leads = self._tilts and self._refused * self._rises(complex(*request.twist[:2])) > 0
+        # While it tips, the walk waits.
+        self._stops = leads and (self._stops or not self._tips)
         if self._stops:
             return grant.at_most(0.0, Limitation(kind=LimitationKind.GROUND, cause=self.reason))
         return grant
@@ -89,8 +92,7 @@ class SlopeLimit:
     @property
     def holds(self) -> bool:
         """Whether no foot is to lift off: feet would slip, or the body tips."""
-        tips = self._off > self._mean + _TIPS or self.slope > self.steepest - _HYSTERESIS
-        return self.refuses or (self._stops and tips)
+        return self.refuses or (self._stops and self._tips)
 
     @property
     def reason(self) -> str:
