@@ -7,6 +7,7 @@ import mujoco
 import numpy as np
 import pytest
 
+import put_down
 from gait_robots import preset
 from tarsus.control.limitation import LimitationKind
 from tarsus.control.limiter.protocol import TwistGrant, TwistRequest
@@ -15,6 +16,7 @@ from tarsus.control.pose.posture_feedback import BodyMove, PostureFeedback
 from tarsus.control.pose.slope_stance import SlopeStance
 from tarsus.control.readings import SensorReadings
 from tarsus.control.robot_controller import RobotController
+from tarsus.control.sensing.body_condition import BodyCondition
 from tarsus.control.terrain.reach import Reach
 from tarsus.control.terrain.roughness import GroundAdaptation
 from tarsus.control.terrain.slope_limit import SlopeLimit
@@ -434,3 +436,23 @@ def test_a_robot_that_stands_on_flat_ground_does_not_move(servos, sensors):
     # Feet that lost contact were pushed down, took others off the ground, and so on: 200 degrees a second.
     assert max(moved[600:]) < math.radians(1.0) * dt
     assert output.at_rest
+
+
+def test_a_robot_is_carried_until_its_feet_have_held_it_for_a_while():
+    condition, dt, seen = BodyCondition(), 0.04, []
+    for tick in range(60):
+        touches, holds = tick < 10 or tick >= 30, tick < 10 or tick in {32, 33} or tick >= 40
+        condition.step([touches] * 6, (0.0, 0.0), dt, held=holds)
+        seen.append(condition.carried)
+    assert seen.index(True) == 22
+    assert [tick for tick, carried in enumerate(seen) if carried] == list(range(22, 44))
+
+
+@pytest.mark.no_cover
+@pytest.mark.parametrize(("name", "ground", "seed"), [("strider", "ramp+20", 8), ("phantomx", "ramp+17", 3)])
+def test_a_robot_that_is_put_down_on_a_slope_becomes_level_and_walks_on(name, ground, seed):
+    # The one overturned, the other waited until it was level, for good.
+    way, tilt, touched = put_down.walk((name, ground, seed))
+    assert way > 0.5
+    assert tilt < 25.0
+    assert not touched
