@@ -68,8 +68,8 @@ class SlopeLimit:
         elif (slope > self.steepest or self._tilts) and not self._refused:
             self._refused = rises
         self.slope = max(self.slope, slope) if self._refused else slope
-        # The way back stays open.
         self._tips = off > self._mean + _TIPS or slope > self.steepest - _HYSTERESIS
+        # The way back stays open.
         self.refuses = self._refused * rises > 0 and not self._stops
 
     def limit(self, request: TwistRequest, grant: TwistGrant) -> TwistGrant:
