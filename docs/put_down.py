@@ -17,21 +17,15 @@ import numpy as np
 
 import tarsus
 from page_tables import Several, measured, write_tables
-from rough_ground import CLEAR, PAGE, ROBOTS, blocks, smooth
-from tarsus.simulation import SimulatedPlant, terrain
+from rough_ground import CLEAR, PAGE, ROBOTS, ramp
+from rough_ground import GROUNDS as ROUGH
+from tarsus.simulation import SimulatedPlant
 
 DT, GRAVITY = 0.01, 9.80665
-
-
-def ramp(_: int, degrees: float) -> Any:
-    return terrain.Ramp(slope=math.radians(degrees), start=CLEAR)
-
-
 GROUNDS: dict[str, Callable[[int], Any]] = {
-    "flat": lambda _: terrain.Flat(),
-    **{f"smooth{mm}": partial(smooth, height=mm) for mm in (60, 100)},
-    **{f"blocks{mm}": partial(blocks, height=mm) for mm in (60, 100)},
-    **{f"ramp{angle:+d}": partial(ramp, degrees=angle) for angle in (10, 17, 20)},
+    **{name: ROUGH[name] for name in ("flat", "smooth60", "smooth100", "blocks60", "blocks100")},
+    # As near as the first blocks.
+    **{f"ramp{angle:+d}": partial(ramp, degrees=angle, start=CLEAR) for angle in (10, 17, 20)},
 }
 # When it is picked up [s], how high, and how fast it is lifted, carried and put down [m], [m/s].
 PICKED_UP, HIGH, LIFTED, CARRIED, LOWERED = 2.0, 0.22, 0.15, 0.3, 0.08

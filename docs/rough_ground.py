@@ -41,8 +41,8 @@ def step(_: int, height: float) -> Any:
     return terrain.Step(rise=height / 1e3)
 
 
-def ramp(_: int, degrees: float) -> Any:
-    return terrain.Ramp(slope=math.radians(degrees))
+def ramp(_: int, degrees: float, start: float = 0.5) -> Any:
+    return terrain.Ramp(slope=math.radians(degrees), start=start)
 
 
 GROUNDS: dict[str, Callable[[int], Any]] = {

@@ -11,7 +11,7 @@ from tarsus.errors import InputError
 from tarsus.export.urdf import to_urdf
 from tarsus.hardware import nominal_calibration
 from tarsus.load.deflection import checked_share
-from tarsus.robot.file import load_robot
+from tarsus.robot.file import load_robot, robot_text
 from tarsus.simulation import SimulatedPlant
 from tarsus.simulation.robot_model import model_assumptions
 
@@ -59,6 +59,7 @@ STRIDER = load_robot("strider")
         tarsus.try_gaits,
         tarsus.robot_to_dict,
         lambda robot: tarsus.save_robot(robot, "robot.toml"),
+        robot_text,
         model_assumptions,
         to_urdf,
     ],

@@ -10,7 +10,7 @@ import numpy as np
 
 from tarsus.errors import RobotFileError
 from tarsus.robot.catalogue import figures_of, servo_catalogue
-from tarsus.robot.robot import JOINTS, GaitDefaults, Robot
+from tarsus.robot.robot import JOINTS, GaitDefaults, Robot, require_robot
 from tarsus.robot.servo import Servo
 from tarsus.robot.units import degrees, to_decimal, to_milli
 
@@ -24,6 +24,7 @@ _Flat: TypeAlias = dict[str, Any]
 
 def decimal_document(robot: Robot) -> dict[str, Any]:
     """Return the tables and keys of the robot; numbers are decimals that read back to the same bits."""
+    require_robot(robot)
     if robot.batch_shape:
         raise RobotFileError(
             f"robot {robot.name!r}",

@@ -16,7 +16,7 @@ from tarsus.robot.document import decimal_document, plain
 from tarsus.robot.parse import parse_toml
 from tarsus.robot.preset_names import PRESETS, preset_names
 from tarsus.robot.problems import problems_of
-from tarsus.robot.robot import Robot, require_robot
+from tarsus.robot.robot import Robot
 from tarsus.robot.schema import RobotFile
 from tarsus.robot.special_file import is_pipe_or_device
 from tarsus.robot.writer import toml_string, toml_text
@@ -123,7 +123,6 @@ def robot_to_dict(robot: Robot) -> dict[str, Any]:
     RobotFileError
         If the robot is a batch of designs.
     """
-    require_robot(robot)
     document: dict[str, Any] = plain(decimal_document(robot))
     return document
 
@@ -180,7 +179,6 @@ def save_robot(robot: Robot, path: str | os.PathLike[str]) -> None:
     RobotFileError
         If it can't be written, or the robot is a batch of designs or has a value that no robot file may have.
     """
-    require_robot(robot)
     text = robot_text(robot)
     try:
         Path(path).write_bytes(text.encode())
