@@ -1,4 +1,4 @@
-"""Write the tables of edges of ground-measured.md: walks to steps down and trenches in physics, with some sensors each.
+"""Write the tables of edges of ground-measured.md: walks in physics to steps down, trenches and the end of blocks.
 
 python docs/edges.py --jobs 2
 python docs/edges.py --robots strider --sensors switches camera --print
@@ -12,13 +12,15 @@ import math
 from collections.abc import Iterable
 from typing import Any, NamedTuple
 
+import mujoco
 import numpy as np
 
 import tarsus
 from estimated_contacts import JOINTS
 from page_tables import Several, measured, write_tables
-from rough_ground import LIES, PAGE, ROBOTS, switches
+from rough_ground import LIES, PAGE, ROBOTS, blocks, switches
 from tarsus.simulation import SimulatedPlant, terrain
+from tarsus.simulation.terrain.surface import surface
 
 # Depth of steps down and of trenches, widths of trenches, where their first edge is, what is walked ahead and back [m].
 DOWN, DEPTH, WIDTHS, EDGES, AHEAD, BACK = 0.3, 0.15, (0.08, 0.2), (0.5, 0.53, 0.56), 0.9, 0.4
@@ -41,6 +43,8 @@ TURNS: dict[str, tuple[tuple[tuple[float, float, float], float], ...]] = {
     "arcs left and right, back": (((1, 0, 0.3), 8), ((1, 0, -0.3), 6), ((-1, 0, 0), 4)),
 }
 TURNS_PACE, TURNS_EDGES = 0.5, (0.49, 0.52)
+# Heights of blocks that end at a step down [mm], where [m], how many fields of each, and the share of the top speed.
+BLOCKS, ENDS, FIELDS, ENDS_PACE = (60, 100), (0.62, 0.66, 0.7), 4, 0.5
 
 
 class Job(NamedTuple):
@@ -61,6 +65,15 @@ class Turn(NamedTuple):
     edge: float
 
 
+class End(NamedTuple):
+    """One walk over blocks that end at a step down: robot, their height [mm], seed, where the edge is [m]."""
+
+    robot: str
+    height: int
+    seed: int
+    edge: float
+
+
 class Outcome(NamedTuple):
     """What a robot did, how long its body touched the ground [s], its greatest tilt and how far it turned [deg]."""
 
@@ -68,6 +81,29 @@ class Outcome(NamedTuple):
     touched: float
     tilt: float
     turned: float = 0.0
+
+
+class BlocksToEdge:
+    """Blocks that end at a step down."""
+
+    def __init__(self, field: terrain.Blocks, edge: float) -> None:
+        self.field, self.step = field, terrain.Step(rise=-DOWN, start=edge)
+        self.friction = field.friction
+
+    def height(self, x: Any, y: Any) -> np.ndarray:
+        """Return the height of the ground [m]."""
+        return np.where(np.asarray(x) < self.step.start, self.field.height(x, y), self.step.height(x, y))
+
+    def add_to(self, spec: Any) -> None:
+        """Add the ground to a model."""
+        self.step.add_to(spec)
+        box = mujoco.mjtGeom.mjGEOM_BOX
+        for (column, row), height in np.ndenumerate(self.field.heights):
+            x, y = ((np.array([column, row]) - self.field.side / 2) * self.field.size).tolist()
+            end = min(x + self.field.size, self.step.start)
+            if height > 0 and end > x:
+                size, pos = ((end - x) / 2, self.field.size / 2, height / 2), ((x + end) / 2, y + self.field.size / 2)
+                spec.worldbody.add_geom(type=box, size=size, pos=(*pos, height / 2), **surface(self.friction))
 
 
 def drive(
@@ -99,11 +135,16 @@ def walk(job: Job) -> Outcome:
     ground: Any = terrain.Step(rise=-DOWN, start=job.edge)
     if job.width:
         ground = terrain.Gaps(width=job.width, depth=DEPTH, start=job.edge, count=1)
+    return ahead_and_back(robot, ground, SENSORS[job.sensors], speed, job.edge + job.width)
+
+
+def ahead_and_back(robot: tarsus.Robot, ground: Any, sensors: Any, speed: float, far: float) -> Outcome:
+    """Return what became of a walk ahead, where beyond so far it has crossed an edge [m], and back."""
     commands = (((speed, 0.0, 0.0), AHEAD / speed), ((-speed, 0.0, 0.0), BACK / speed))
-    found, way = drive(robot, ground, SENSORS[job.sensors], commands)
+    found, way = drive(robot, ground, sensors, commands)
     if found.kind:
         return found
-    if max(way) > job.edge + job.width:
+    if max(way) > far:
         return found._replace(kind="crossed")
     return found._replace(kind="back" if way[-1] < max(way) - BACK / 4 else "stayed")
 
@@ -117,6 +158,13 @@ def turn(job: Turn) -> Outcome:
     return drive(robot, terrain.Step(rise=-DOWN, start=job.edge), "ideal", commands)[0]
 
 
+def end(job: End) -> Outcome:
+    """Return what became of a walk over blocks to where they end."""
+    robot = tarsus.load_robot(job.robot)
+    speed = ENDS_PACE * tarsus.WalkController(robot).top_speed((1, 0, 0))
+    return ahead_and_back(robot, BlocksToEdge(blocks(job.seed, job.height), job.edge), "ideal", speed, job.edge)
+
+
 def edges_table(outcomes: dict[Job, Outcome], sensors: list[str]) -> str:
     """Return what each robot did how often; in the last lines, how bodies touched the ground and tilted in all."""
     lines = [f"| walk | {' | '.join(sensors)} |", f"|---|{'---|' * len(sensors)}"]
@@ -124,8 +172,7 @@ def edges_table(outcomes: dict[Job, Outcome], sensors: list[str]) -> str:
         cells = []
         for key in sensors:
             found = [outcome for job, outcome in outcomes.items() if job[:3] == (robot, width, key)]
-            kinds = [each.kind for each in found]
-            cells.append(", ".join(f"{kinds.count(kind)} {kind}" for kind in sorted(set(kinds))) + touching(found))
+            cells.append(ended(found))
         lines.append(f"| {robot}, {f'trench {1e3 * width:.0f}' if width else 'step down'} | {' | '.join(cells)} |")
     every = [[outcome for job, outcome in outcomes.items() if job.sensors == key] for key in sensors]
     touches = [[each.touched for each in found] for found in every]
@@ -153,6 +200,25 @@ def turns_table(outcomes: dict[Turn, Outcome], robots: list[str]) -> str:
     return "\n".join(lines)
 
 
+def ends_table(outcomes: dict[End, Outcome], robots: list[str]) -> str:
+    """Return what each robot did how often over blocks of each height, and its greatest tilts."""
+    lines = [f"| blocks that end | {' | '.join(robots)} |", f"|---|{'---|' * len(robots)}"]
+    for height in BLOCKS:
+        cells = []
+        for robot in robots:
+            found = [outcome for job, outcome in outcomes.items() if job[:2] == (robot, height)]
+            tilts = [each.tilt for each in found]
+            cells.append(f"{ended(found)}, {np.median(tilts):.0f} and {max(tilts):.0f} deg")
+        lines.append(f"| {height} mm high | {' | '.join(cells)} |")
+    return "\n".join(lines)
+
+
+def ended(found: list[Outcome]) -> str:
+    """Return how many walks ended in which way, and how many bodies touched the ground."""
+    kinds = [each.kind for each in found]
+    return ", ".join(f"{kinds.count(kind)} {kind}" for kind in sorted(set(kinds))) + touching(found)
+
+
 def touching(found: list[Outcome]) -> str:
     """Return how many bodies touched the ground, if any."""
     count = sum(each.touched > 0 for each in found)
@@ -163,9 +229,15 @@ def tables(asked: argparse.Namespace) -> dict[str, str]:
     """Measure, and return the tables."""
     jobs = [Job(*job) for job in itertools.product(asked.robots, (0.0, *WIDTHS), asked.sensors, EDGES, PACES)]
     turns = [Turn(*job) for job in itertools.product(asked.robots, TURNS, TURNS_EDGES)]
+    ends = [End(*job) for job in itertools.product(asked.robots, BLOCKS, range(FIELDS), ENDS)]
     edges = dict(zip(jobs, measured(walk, jobs, asked.jobs), strict=True))
     turned = dict(zip(turns, measured(turn, turns, asked.jobs), strict=True))
-    return {"edges": edges_table(edges, asked.sensors), "turns at edges": turns_table(turned, asked.robots)}
+    ended_there = dict(zip(ends, measured(end, ends, asked.jobs), strict=True))
+    return {
+        "edges": edges_table(edges, asked.sensors),
+        "turns at edges": turns_table(turned, asked.robots),
+        "blocks that end": ends_table(ended_there, asked.robots),
+    }
 
 
 if __name__ == "__main__":

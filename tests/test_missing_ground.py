@@ -750,6 +750,28 @@ def test_a_foot_that_has_found_no_ground_at_any_place_steps_first_on_the_way_bac
     assert missing.stranded == []
 
 
+@pytest.mark.parametrize("speed", [0.05, 0.3])
+def test_the_body_moves_back_over_its_feet_where_these_do_not_hold_a_robot_that_steps(speed):
+    missing = MissingGround(NAMES)
+    for _ in range(4):
+        stepped(missing, [(0, 0.08, False, False)], [missing.places.get(0, AHEAD[0]), *REST[1:]])
+        limited(missing, 0.1, 0.0, 0.0)
+
+    def way(*twist):
+        speeds = []
+        for _ in range(400):
+            limited(missing, *twist)
+            stepped(missing, [(0, 0.08, False, False)], [missing.places[0], *REST[1:]])
+            speeds.append(missing.back)
+        assert not speeds[-1]
+        return 0.01 * sum(speeds), max(map(abs, speeds))
+
+    # As far as the body backs off an edge by itself, then no way by turning, and as far again.
+    assert way(0.1, 0.0, 0.0)[0] == pytest.approx(-0.08, abs=0.01)
+    assert way(0.0, 0.0, 0.5) == way(0.0, 0.0, 0.0) == (0.0, 0.0)
+    assert way(-speed, 0.0, 0.0) == (pytest.approx(-0.08, abs=0.002), min(speed, 0.15))
+
+
 def test_a_robot_that_tips_towards_a_foot_goes_back_at_once_but_not_far():
     two = [False, True, False, False, True, False]
     missing, deep = MissingGround(NAMES), [(0, 0.03, True, True)]

@@ -53,6 +53,10 @@ class Edge:
         """Whether the robot has turned on the spot as it met the edge."""
         return bool(self.twist[2]) and not self._moves
 
+    def along(self, place: complex) -> float:
+        """Return how far a place in the heading frame is towards the edge that feet have met [m]."""
+        return (place * self.way.conjugate()).real
+
     def turn_to(self, yaw: float) -> complex:
         """Take the direction of the heading frame [rad]; return what directions in it are to be multiplied by."""
         turn, self._yaw = cmath.exp(1j * (self._yaw - yaw)), yaw

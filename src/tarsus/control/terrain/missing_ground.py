@@ -30,8 +30,7 @@ _HELD_UP, _STEP, _LOW_STEP, _HELD, _LATER = 0.007, 0.5, 0.05, 0.3, 5.0
 _LIFTS = 0.008
 # A robot that waits on feet that lose contact in turn rocks: where it is raised by more, they are not lowered [m].
 _RAISED = 0.005
-# A foot where the robot is off its attitude by more does not step back: it holds the body, or is in the air by its tilt
-# [m].
+# A foot where the robot is off its attitude by more [m] does not step back: it holds the body, or the tilt lifts it.
 _LEANS = 0.02
 # A walk that is slower says why.
 SLOW = 0.85
@@ -44,8 +43,7 @@ _BACK = (0.4, 1.0, 1.0)
 _FIRM, _MARGIN, _BACKS, _SPEED = 0.06, 0.03, 0.08, 0.15
 # A foot this close to its place is there; one that finds no ground at less depth than the second is over no hole [m].
 _THERE, _SHALLOW = 0.004, 0.02
-# How often the walk goes on with other footholds where there may be no hole, after which time [s], and for how long it
-# makes up for no lost time then [s].
+# How often the walk goes on where there may be no hole, after which time [s], and how long it catches up nothing [s].
 _AGAIN, _WAITS, _CAREFUL = 2, 1.0, 1.5
 
 
@@ -91,16 +89,15 @@ class MissingGround:
         # How long feet that hang have been held up by their legs [s].
         self._held = dict[int, float]()
         self._edge, self._backed, self._again, self._slows = Edge(scale), 0.0, 0, ""
-        # Whether the robot is to stop, and whether rest footholds are over the hole that it has met.
-        self._stops, self._over = True, False
+        # Whether the robot is to stop; whether rest footholds are over the hole that it has met; a way back from it.
+        self._stops, self._over, self._leaves = True, False, 0j
         self.twist: Sequence[float] = (0.0, 0.0, 0.0)
 
     @property
     def limitations(self) -> list[Limitation]:
         """Why the walk slows down, unless the command is refused for it."""
         cause = Cause("the foot looks for the ground", self._slows) if self._slows else self._cause
-        waits = not self.refuses and self.pace < SLOW
-        return [cause.limitation(LimitationKind.GROUND)] if waits else []
+        return [cause.limitation(LimitationKind.GROUND)] if not self.refuses and self.pace < SLOW else []
 
     def forget(self) -> None:
         """Forget holes and obstacles: the robot is carried elsewhere."""
@@ -153,8 +150,7 @@ class MissingGround:
         footing, dt : Footing, float
             The feet, and which of them stand; length of the tick [s].
         footholds, deeper, age : FootholdTransfer, float, float
-            Rest footholds, and how far from these feet may stand; how much deeper ground may be than expected [m]; age
-            of the contacts [s].
+            The footholds; how much deeper ground may be than expected [m]; age of the contacts [s].
         """
         (feet, stands, centre, height), rest = footing, footholds.rest.tolist()
         if not searches:
@@ -167,17 +163,16 @@ class MissingGround:
         for leg in [leg for leg in self.places if leg not in searching or leg in past]:
             self._drop(leg)
             self._tries[leg] = 0
-        # A robot that has tipped goes back until it is held well.
-        well = self._scale * _MARGIN * self.tips
+        # A robot that has tipped goes back until it is held well; one none of whose feet stands is being lifted.
+        standing = [foot for foot, on in zip(feet, stands, strict=True) if on]
+        held = not (searches and standing) or holds(standing, centre + self._scale * _MARGIN * self.tips)
         self.pace, self.back, self.tips, self._slows, self.edge = 1.0 - self.refuses, 0j, 0j, "", 0.0
         if self.lost is not None:
             self._tip(feet[self.lost] / abs(feet[self.lost]))
             self.pace, self._slows = 0.0, self._names[self.lost]
         before, self._held = self._held, {}
         slows, deep = deeper + self._scale * _SLOWS, deeper + self._scale * _STANDS
-        sure, standing = deeper <= self._scale * _SURE, [foot for foot, on in zip(feet, stands, strict=True) if on]
-        # A robot none of whose feet stands is being lifted.
-        held = not (searches and standing) or holds(standing, centre + well)
+        sure = deeper <= self._scale * _SURE
         for search in searches:
             leg, depth, falls, lasts, sunk, raised, leans = search
             way = self._edge.seen_from(feet[leg], rest[leg])
@@ -198,38 +193,44 @@ class MissingGround:
             if missing and not (self.steps_back(leg, feet[leg]) or self.gives_up(leg)):
                 self.edge = depth if held_up else self.edge
                 self._step_back(leg, depth, way, footholds, sure=sure and not self.edge)
-        self._back_off(footing, dt)
-
-    def _back_off(self, footing: Footing, dt: float) -> None:
-        """Decide with which velocity the body backs off, and whether the walk goes on where it has waited."""
-        feet, stands, centre, _ = footing
-        # The time runs on while all feet without ground have been only a little below the others: they are over no
-        # hole, unless the robot tips.
+        # Over no hole, unless the robot tips, are feet only a little below the others.
         shallow = all(self._shallow[leg] and not self.tips for leg in self.places)
+        self._go_on(shallow, dt)
+        if self.places:
+            self.pace, self._slows = _SLOWEST * bool(self.stranded), ""
+        self._back_off(footing, shallow, dt)
+
+    def _go_on(self, shallow: bool, dt: float) -> None:
+        """Decide whether the walk goes on where it has waited, on feet none of which is far below the others."""
         self._edge.since = (self._edge.since + dt) * (shallow and all(map(self.gives_up, self.places)))
         if self.refuses and not self._stops and self._again < _AGAIN and self._edge.since > _WAITS:
             self._again += 1
             self._edge.leave(self.obstacles.found)
-        speed, backed = self._scale * _SPEED, self._backed < self._scale * _BACKS
+        elif not (self.places or self.refuses) and self._edge.since > FORGETS:
+            self._again, self.obstacles.found = 0, 0j
+
+    def _back_off(self, footing: Footing, shallow: bool, dt: float) -> None:
+        """Decide with which velocity the body backs off, or leaves an edge."""
+        (feet, stands, centre, _), speed, most = footing, self._scale * _SPEED, self._scale * _BACKS
         if not self.places:
             # A robot that tips where a foot sinks goes back at once.
-            way = self.tips or self._edge.way * (self._stops and self._over)
-            self.back = -speed * way * backed
-            self._backed = (self._backed + speed * dt) * bool(way)
-            if not self.refuses and self._edge.since > FORGETS:
-                self._again, self.obstacles.found = 0, 0j
-            return
-        self.pace, self._slows, turn = _SLOWEST * bool(self.stranded), "", self._edge.way.conjugate()
-        along = [(feet[leg] * turn).real for leg in self.places]
-        edge = min(along) - self._scale * _FIRM
-        firm = [foot for foot, on in zip(feet, stands, strict=True) if on and (foot * turn).real < edge]
-        # A robot that turns meets the edge anew with each step, unless it goes back.
-        enough = max(self._tries) < len(_BACK) and not self._edge.turns
-        enough &= holds(firm, centre + self._scale * _MARGIN * self._edge.way)
-        # From a foot behind the body, it would back off over the hole; where legs do not reach, there is none.
-        if backed and not shallow and max(along) > (centre * turn).real and not (self.obstacles.legs or enough):
-            self.back = -speed * self._edge.way
-            self._backed += speed * dt
+            velocity = -speed * (self.tips or self._edge.way * (self._stops and self._over))
+            self._backed *= bool(velocity)
+        elif self._leaves:
+            # The other feet may not hold a robot that steps: the body moves over them, as far again.
+            velocity, most = self._leaves * min(speed / abs(self._leaves), 1.0), 2 * most
+        else:
+            along = [self._edge.along(feet[leg]) for leg in self.places]
+            edge = min(along) - self._scale * _FIRM
+            firm = [foot for foot, on in zip(feet, stands, strict=True) if on and self._edge.along(foot) < edge]
+            # A robot that turns meets the edge anew with each step, unless it goes back.
+            enough = max(self._tries) < len(_BACK) and not self._edge.turns
+            enough &= holds(firm, centre + self._scale * _MARGIN * self._edge.way)
+            # From a foot behind the body, it would back off over the hole; where legs do not reach, there is none.
+            backs = not shallow and max(along) > self._edge.along(centre) and not (self.obstacles.legs or enough)
+            velocity = -speed * self._edge.way * backs
+        self.back = velocity * (self._backed < most)
+        self._backed += abs(self.back) * dt
 
     def _step_back(self, leg: int, depth: float, way: complex, footholds: FootholdTransfer, *, sure: bool) -> None:
         """Choose a place behind its rest foothold for a foot on this way that finds no ground at this depth [m]."""
@@ -280,7 +281,7 @@ class MissingGround:
 
     def held(self, shift: complex) -> complex:
         """Return the part of a velocity of all feet by which the body would go on where it may not [m/s]."""
-        return min((shift * self._edge.way.conjugate()).real, 0.0) * self._edge.way if self.refuses else 0j
+        return min(self._edge.along(shift), 0.0) * self._edge.way if self.refuses else 0j
 
     def limit(self, request: TwistRequest, grant: TwistGrant) -> TwistGrant:
         """Return the grant, without a twist that leads over an edge or towards an obstacle; another one ends that."""
@@ -288,6 +289,7 @@ class MissingGround:
         self._stops = not any(request.twist)
         self.refuses = leads_towards(velocity, self._edge.way) or (self._stops and self._over)
         self.stranded = [leg for leg in self.places if self.gives_up(leg) and any(request.twist) and not self.refuses]
+        self._leaves = velocity * (bool(self.stranded) and leads_towards(-velocity, self._edge.way or self._edge.left))
         if self.refuses:
             return grant.at_most(0.0, self._cause.limitation(LimitationKind.GROUND))
         for leg in self.obstacles.led_away(partial(leads_towards, velocity)):
