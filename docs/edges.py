@@ -32,7 +32,10 @@ SENSORS: dict[str, Any] = {
     "hobby": "hobby",
     "all but camera": "ideal",
     "camera": "camera",
+    "20 ms ticks": "ideal",
 }
+# Length of a tick, and where it is another one [s].
+TICK, TICKS = 0.01, {"20 ms ticks": 0.02}
 # Walks that turn at an edge: shares of the twist's parts, and how long [s]; half of the top speed, edges there [m].
 TURNS: dict[str, tuple[tuple[tuple[float, float, float], float], ...]] = {
     "stop, turn left, ahead": (((1, 0, 0), 6), ((0, 0, 0), 1), ((0, 0, 1), 10), ((1, 0, 0), 3)),
@@ -107,11 +110,15 @@ class BlocksToEdge:
 
 
 def drive(
-    robot: tarsus.Robot, ground: Any, sensors: Any, commands: Iterable[tuple[tuple[float, float, float], float]]
+    robot: tarsus.Robot,
+    ground: Any,
+    sensors: Any,
+    commands: Iterable[tuple[tuple[float, float, float], float]],
+    dt: float = TICK,
 ) -> tuple[Outcome, list[float]]:
     """Drive a robot by twists for some time each; return the outcome, a fall or none, and where it was along x [m]."""
     plant, controller = SimulatedPlant(robot, terrain=ground, sensors=sensors), tarsus.RobotController(robot)
-    dt, touched, lying, tilt, yaw, turned, way = 0.01, 0.0, 0.0, 0.0, 0.0, 0.0, [0.0]
+    touched, lying, tilt, yaw, turned, way = 0.0, 0.0, 0.0, 0.0, 0.0, [0.0]
     plant.start(controller.output)
     for twist, time in commands:
         for _ in range(round(time / dt)):
@@ -135,13 +142,13 @@ def walk(job: Job) -> Outcome:
     ground: Any = terrain.Step(rise=-DOWN, start=job.edge)
     if job.width:
         ground = terrain.Gaps(width=job.width, depth=DEPTH, start=job.edge, count=1)
-    return ahead_and_back(robot, ground, SENSORS[job.sensors], speed, job.edge + job.width)
+    return ahead_and_back(robot, ground, job.sensors, speed, job.edge + job.width)
 
 
-def ahead_and_back(robot: tarsus.Robot, ground: Any, sensors: Any, speed: float, far: float) -> Outcome:
+def ahead_and_back(robot: tarsus.Robot, ground: Any, sensors: str, speed: float, far: float) -> Outcome:
     """Return what became of a walk ahead, where beyond so far it has crossed an edge [m], and back."""
     commands = (((speed, 0.0, 0.0), AHEAD / speed), ((-speed, 0.0, 0.0), BACK / speed))
-    found, way = drive(robot, ground, sensors, commands)
+    found, way = drive(robot, ground, SENSORS[sensors], commands, TICKS.get(sensors, TICK))
     if found.kind:
         return found
     if max(way) > far:
@@ -162,7 +169,8 @@ def end(job: End) -> Outcome:
     """Return what became of a walk over blocks to where they end."""
     robot = tarsus.load_robot(job.robot)
     speed = ENDS_PACE * tarsus.WalkController(robot).top_speed((1, 0, 0))
-    return ahead_and_back(robot, BlocksToEdge(blocks(job.seed, job.height), job.edge), "ideal", speed, job.edge)
+    ground = BlocksToEdge(blocks(job.seed, job.height), job.edge)
+    return ahead_and_back(robot, ground, "all but camera", speed, job.edge)
 
 
 def edges_table(outcomes: dict[Job, Outcome], sensors: list[str]) -> str:

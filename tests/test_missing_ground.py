@@ -7,6 +7,7 @@ import mujoco
 import numpy as np
 import pytest
 
+import edges
 import tarsus
 from sample_contacts import find_open, take_in
 from sample_gait_states import begun, rest_of, setup_of
@@ -557,6 +558,13 @@ def test_a_robot_turns_on_the_spot_at_an_edge(name):
 
 
 @pytest.mark.no_cover
+def test_a_robot_stops_at_an_edge_in_ticks_of_20_ms_too():
+    found = edges.walk(edges.Job("phantomx", 0.0, "20 ms ticks", 0.5, 0.25))
+    assert (found.kind, found.touched) == ("back", 0.0)
+    assert found.tilt < 18
+
+
+@pytest.mark.no_cover
 def test_a_robot_stops_at_a_wall_says_so_and_walks_away_from_it():
     walk = Walk(terrain.Step(rise=0.15, start=0.41))
     stopped = walk.go(0.13, 4.0)
@@ -839,6 +847,9 @@ def test_feet_of_a_body_that_is_far_off_its_attitude_do_not_step_back():
         assert bool(missing.tips) is tips
     # On rough ground the body is off its attitude more often.
     assert stepped(MissingGround(NAMES), [(0, 0.13, False, True)], leans=0.022, deeper=0.03).places
+    # After a long search it does, where the others hold the robot.
+    assert stepped(MissingGround(NAMES), [(0, 0.08, False, False)], leans=0.03).places
+    assert not stepped(MissingGround(NAMES), [(0, 0.08, False, False)], leans=0.03, centre=0.1 + 0.1j).places
 
 
 def test_a_robot_whose_foot_slides_off_an_edge_as_others_lift_off_puts_them_down():
