@@ -30,7 +30,7 @@ _HELD_UP, _STEP, _LOW_STEP, _HELD, _LATER = 0.007, 0.5, 0.05, 0.3, 5.0
 _LIFTS = 0.008
 # A robot that waits on feet that lose contact in turn rocks: where it is raised by more, they are not lowered [m].
 _RAISED = 0.005
-# A foot where the robot is off its attitude by more [m] may hold the body: it steps back only after a long search.
+# A foot where the robot is off its attitude by more [m] may hold the body: it steps back once, after a long search.
 _LEANS = 0.02
 # A walk that is slower says why.
 SLOW = 0.85
@@ -185,7 +185,7 @@ class MissingGround:
             long = not lasts or self._held[leg] > _HELD + _LATER * age
             hangs = not falls and (depth > deep or not lasts) if leg in self.places else long
             missing = depth - max(raised, 0.0) > _DEEP * height + _ROUGHLY_DEEP * deeper or hangs
-            missing &= abs(leans) < max(self._scale * _LEANS, deeper) or (held and not lasts)
+            missing &= abs(leans) < max(self._scale * _LEANS, deeper) or (held and not (lasts or leg in self.places))
             # The other feet hold a robot that does not sink or lean far.
             unheld = not held and sunk > -self._scale * _LIFTS and depth + max(sunk, 0.0) > deep
             if unheld or sunk > deep or min(leans, depth) > deep:
