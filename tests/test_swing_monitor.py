@@ -105,3 +105,14 @@ def test_a_leg_that_turns_around_before_its_lag_is_learnt_is_not_stopped(lag):
     for tick in range(30):
         valid = ValidReadings(joint_angles=((angle(tick * DT - lag), 0.0, 0.0),) * 6)
         assert monitor.step([angle(tick * DT)] * 6, valid, DT, [tick < 20] * 6) == []
+
+
+@pytest.mark.parametrize(("stops_at", "found"), [(math.inf, set()), (0.2, {0})])
+def test_a_long_first_tick_counts_no_longer_than_up_to_the_lag(stops_at, found):
+    # As long as the lag is not learnt, the longest one counts, which reaches back into the first tick.
+    monitor, now, stopped = SwingMonitor(), 0.0, set[int]()
+    for dt in (0.05, *[DT] * 40):
+        now += dt
+        measured = ((min(now, stops_at) - 0.12, 0.0, 0.0), *[(now - 0.12, 0.0, 0.0)] * 5)
+        stopped |= set(monitor.step([now] * 6, ValidReadings(joint_angles=measured), dt, AIR))
+    assert stopped == found
