@@ -43,7 +43,7 @@ _BACK = (0.4, 1.0, 1.0)
 _FIRM, _MARGIN, _BACKS, _SPEED = 0.06, 0.03, 0.08, 0.15
 # A foot this close to its place is there; one that finds no ground at less depth than the second is over no hole [m].
 _THERE, _SHALLOW = 0.004, 0.02
-# How often the walk goes on where there may be no hole, after which time [s], and how long it catches up nothing [s].
+# How often the walk goes on where there may be no hole, after which time [s], and makes up for no lost time then [s].
 _AGAIN, _WAITS, _CAREFUL = 2, 1.0, 1.5
 
 
@@ -89,7 +89,7 @@ class MissingGround:
         # How long feet that hang have been held up by their legs [s].
         self._held = dict[int, float]()
         self._edge, self._backed, self._again, self._slows = Edge(scale), 0.0, 0, ""
-        # Whether the robot is to stop; whether rest footholds are over the hole that it has met; a way back from it.
+        # Whether the robot is to stop; whether rest footholds are over a hole; velocity of the way back from it [m/s].
         self._stops, self._over, self._leaves = True, False, 0j
         self.twist: Sequence[float] = (0.0, 0.0, 0.0)
 
@@ -150,7 +150,7 @@ class MissingGround:
         footing, dt : Footing, float
             The feet, and which of them stand; length of the tick [s].
         footholds, deeper, age : FootholdTransfer, float, float
-            The footholds; how much deeper ground may be than expected [m]; age of the contacts [s].
+            Rest footholds and their bounds; how much deeper ground may be than expected [m]; age of the contacts [s].
         """
         (feet, stands, centre, height), rest = footing, footholds.rest.tolist()
         if not searches:
