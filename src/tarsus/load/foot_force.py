@@ -144,20 +144,22 @@ def balanced_forces(
     count = sum(contacts)
     if not count:
         return (0.0,) * len(feet)
-    down = [(foot[0], foot[1], part) for foot, part in zip(feet, contacts, strict=True) if part]
-    mean_x, mean_y = sum(part * x for x, _, part in down) / count, sum(part * y for _, y, part in down) / count
-    xx = xy = yy = 0.0
-    for at_x, at_y, part in down:
-        x, y = at_x - mean_x, at_y - mean_y
-        xx += part * x * x
-        xy += part * x * y
-        yy += part * y * y
-    moments = PlanarMoments(xx=xx, xy=xy, yy=yy)
-    off_x, off_y = weight * (centre[0] - mean_x), weight * (centre[1] - mean_y)
+    mean_x = mean_y = xx = xy = yy = 0.0
+    for foot, part in zip(feet, contacts, strict=True):
+        mean_x, mean_y = mean_x + part * foot[0], mean_y + part * foot[1]
+    mean_x, mean_y = mean_x / count, mean_y / count
+    bearing: list[tuple[int, float, float, float]] = []
+    for leg, part in enumerate(contacts):
+        if part:
+            x, y = feet[leg][0] - mean_x, feet[leg][1] - mean_y
+            xx, xy, yy = xx + part * x * x, xy + part * x * y, yy + part * y * y
+            bearing.append((leg, x, y, part))
+    moments = PlanarMoments(xx, xy, yy)
     a = b = 0.0
     if moments.span_area(_LEAST_SPREAD):
+        off_x, off_y = weight * (centre[0] - mean_x), weight * (centre[1] - mean_y)
         a, b = moments.slopes(off_x, off_y, determinant=moments.determinant)
-    return tuple(
-        max(part * (weight / count + a * (foot[0] - mean_x) + b * (foot[1] - mean_y)), 0.0) if part else 0.0
-        for foot, part in zip(feet, contacts, strict=True)
-    )
+    forces, mean = [0.0] * len(feet), weight / count
+    for leg, x, y, part in bearing:
+        forces[leg] = max(part * (mean + a * x + b * y), 0.0)
+    return tuple(forces)

@@ -69,7 +69,7 @@ class VerticalLoads:
             Joint angles [rad].
         """
         if valid.forces is not None:
-            measured = [max(force[2], 0.0) if force else 0.0 for force in valid.forces]
+            measured = [force[2] if force and force[2] > 0.0 else 0.0 for force in valid.forces]
         else:
             measured = [self._weight / _FEWEST * on for on in bears]
         if valid.joint_angles is None or None in valid.joint_angles:
@@ -81,7 +81,7 @@ class VerticalLoads:
         if not total:
             return (0.0,) * len(feet)
         full = _BEARS * total
-        bear = [min(load / full, 1.0) for load in loads]
+        bear = [load / full if load < full else 1.0 for load in loads]
         if valid.forces is None:
             if self._centre is None:
                 # As it was when it was first of use: it moves little in B.

@@ -94,7 +94,8 @@ class ServoMonitor:
         self._stall_torque, self.failed = stall_torque, FailedJoints(len(stall_torque))
         # Durations and commands of the last ticks, and the sum of the durations [s].
         self._commands: deque[tuple[float, Float[np.ndarray, "legs 3"]]] = deque()
-        self._span = self._time = self._since = 0.0
+        # It looks in the ticks in which the body is looked at, too: the others are short.
+        self._span, self._time, self._since = 0.0, 0.0, _PERIOD
         self._evidence: Float[np.ndarray, "2 legs 3"] | None = None
         # Legs that have been found, and those whose feet touched as joints were last looked at.
         self._found, self._touched = set[int](), set[int]()

@@ -35,8 +35,8 @@ if TYPE_CHECKING:
 
 __all__ = ["FeltGround"]
 
-# How far below the expected ground feet go by the end of their swing, over the roughness.
-_DEPTH_SHARE = 0.6
+# How far below the expected ground feet go by the end of their swing, over the roughness, and where it is rough [m].
+_DEPTH_SHARE, _ROUGH = 0.6, 0.006
 # How soon feet lift off that are not lowered any more [s].
 _LEAVING = 0.1
 # Speed with which feet look for the ground while others hold a robot that stands [m/s], and how far below the expected
@@ -202,9 +202,10 @@ class FeltGround:
         body, gently = self.body, self._still and self.support.held and bool(state.down.all())
         # The body levels about its middle, which its feet pass below.
         passing = complex(-body.rates.turn[1], body.rates.turn[0]) * float(state.posture.value[2])
+        scale, depth = body.reach.scale, _DEPTH_SHARE * body.roughness.value
         return FeltInputs(
             *feet,
-            depth=_DEPTH_SHARE * body.roughness.value,
+            depth=depth,
             climb=body.rates.climb,
             turn=body.rates.turn,
             drift=body.drift + self.missing.held(passing),
@@ -213,12 +214,13 @@ class FeltGround:
             travel=travel,
             pace=self.support.pace,
             swing_height=float(state.posture.value[SWING_HEIGHT]) + body.roughness.swing_rise,
-            lowering=body.reach.scale * (_GENTLE if gently else self._loads.fastest_descent),
-            scale=body.reach.scale,
+            lowering=scale * (_GENTLE if gently else self._loads.fastest_descent),
+            scale=scale,
             late=self.contacts.age,
             beside=self.ground.beside,
             exact=bool(self.ground.crossing),
             in_air=self.condition.in_air,
+            rough=min(depth / (scale * _ROUGH), 1.0),
             slow_contact=body.stance.lasting,
         )
 
@@ -226,8 +228,7 @@ class FeltGround:
         """Decide where feet step that find no ground; return which stand, or would, with the robot in the air."""
         contacts, missing, deeper = self.contacts, self.missing, self.body.roughness.deeper
         near, low = not_sunk(state, self.body, footing, tips=bool(missing.tips or missing.places))
-        attitude = self.measured.attitude
-        tilt = None if attitude is None else off_commanded(attitude, state)
+        tilt = self.measured.attitude and off_commanded(self.measured.attitude, state)
         feet = zip(footing.places, state.ground_height.tolist(), strict=True)
         depths = [self.ground.at(place) + state.elevation - height for place, height in feet]
         contacts.find_open(footing._replace(down=near), tilt, dt, low=low, depths=depths)
@@ -247,8 +248,7 @@ class FeltGround:
             missing.lost = self._tipping.leg if missing.lost is None else missing.lost
             if missing.lost is not None and self._tipping.at_edge:
                 missing.tipped(missing.lost, footing.places[missing.lost])
-        on = [on and stand for on, stand in zip(footing.down, stands, strict=True)]
-        footing = footing._replace(down=on)
+        footing = footing._replace(down=[on and stand for on, stand in zip(footing.down, stands, strict=True)])
         missing.step(searches, footing, dt, footholds=footholds, deeper=deeper, age=contacts.age)
         self.body.roughness.at_edge(missing.edge)
         return stands

@@ -116,8 +116,8 @@ class FeltInputs(NamedTuple):
         Whether feet are to keep to their paths, as one of them crosses a hole.
     redundant : bool
         Whether more than three feet stand at any time of the gait.
-    slow_contact : float
-        How far feet slow down just over the expected ground, 0 to 1.
+    rough, slow_contact : float, float
+        How rough the ground is for feet that go down; how far they slow down just over the expected ground; 0 to 1.
     """
 
     under: list[GroundUnder | None]
@@ -139,6 +139,7 @@ class FeltInputs(NamedTuple):
     scale: float = 1.0
     exact: bool = False
     redundant: bool = False
+    rough: float = 0.0
     slow_contact: float = 0.0
 
 

@@ -32,8 +32,6 @@ _RISING_FIRST, _STEEP_TOP_PHASE = 0.15, 0.35
 _DESCENT, _ROUGH_DESCENT, _SHORTEST_DESCENT = 0.5, 0.4, 0.2
 # That fraction, and the speed, of a foot that slows down before contact [m/s].
 _SLOW_DESCENT, _SLOW_CONTACT = 0.52, 0.09
-# How far below the expected ground feet go where it is rough [m].
-_ROUGH = 0.006
 # How much of its way down a slope a foot at its top has behind it.
 _BEHIND = 0.5
 # Height over the ground from which on a foot goes back, over the swing height.
@@ -155,7 +153,7 @@ def _losing(over: float, felt: FeltInputs) -> float:
     """Return the least speed down of a foot that has stood, so high over the expected ground, while others stand."""
     if felt.redundant and felt.pace > _GOES_ON:
         return felt.scale * _LOSING_ONE_OF_MANY
-    rough = min(felt.depth / (felt.scale * _ROUGH), 1.0) if over < -felt.scale * _NEAR else 1.0
+    rough = felt.rough if over < -felt.scale * _NEAR else 1.0
     return felt.scale * (_LOSING + rough * (_SEARCHING - _LOSING))
 
 
@@ -165,19 +163,18 @@ def _swinging(
     """Return the height of a foot in the air, and its state: it rises to its top, then goes down."""
     phase, swing_time, lifted_at, place = swing
     speed, acceleration, top, top_phase, slide, drawn_back, bow = foot
-    rough = min(felt.depth / (felt.scale * _ROUGH), 1.0)
-    part = _DESCENT + rough * (_ROUGH_DESCENT - _DESCENT)
+    part = _DESCENT + felt.rough * (_ROUGH_DESCENT - _DESCENT)
     part = max(part + felt.slow_contact * (_SLOW_DESCENT - part) - felt.late / swing_time, _SHORTEST_DESCENT)
     if math.isnan(top) or (phase < top_phase and drawn_back is None):
         # No higher than the foot can be there in time, and down again by the end of its swing.
-        top_phase = _TOP_PHASE + rough * (_ROUGH_TOP_PHASE - _TOP_PHASE)
+        top_phase = _TOP_PHASE + felt.rough * (_ROUGH_TOP_PHASE - _TOP_PHASE)
         rises = height + _FASTEST_RISE * (top_phase - phase) * swing_time
         falls = under.expected - felt.depth + felt.lowering * part * swing_time
-        fits = min(max(falls, lifted_at + _LEAST_RISE * felt.swing_height), rises)
+        fits = max(falls, lifted_at + _LEAST_RISE * felt.swing_height)
         start = lifted_at - _BEHIND * max(lifted_at - under.expected, 0.0)
         over = max(start, under.expected, under.way) + felt.swing_height
         highest = max(under.highest, under.bowed)
-        top = max(min(over, highest, fits), height)
+        top = max(min(over, highest, fits, rises), height)
         bow = under.bow
         if bow:
             bow = bow * max(min(top, highest) - under.highest, 0.0) / max(highest - under.highest, ROUNDING)
