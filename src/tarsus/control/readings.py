@@ -45,7 +45,7 @@ class SensorReadings:
     attitude : array, shape (2,), or None
         Roll and pitch of B in the world, z along gravity: those of ``Rz(yaw) Ry(pitch) Rx(roll)`` [rad].
     angular_rates : array, shape (3,), or None
-        Angular velocity of B in the world, components along B's axes [rad/s].
+        Angular velocity of B in the world, mean over the tick, components along B's axes [rad/s].
     ground : GroundHeights or None
         Heights of the ground around the body.
     age : float or mapping of str to float

@@ -41,7 +41,7 @@ class Measurement:
         self._legs = robot.legs
         self._leg_of = {model.geom(foot_geom_name(robot, leg)).id: leg for leg in range(robot.legs)}
         # Looking an array up in the engine's data takes longer than reading it.
-        self._orientation, self._rates = data.qpos[3:7], data.qvel[3:6]
+        self._orientation, self._before, self._rates = data.qpos[3:7], np.zeros(4), np.zeros(3)
         found = data.sensordata[: 3 * robot.legs + 1]
         self._foot_forces, self._body_contact = found[:-1].reshape(robot.legs, 3), found[-1:]
 
@@ -95,10 +95,25 @@ class Measurement:
         """Return whether the body is in contact with the ground."""
         return bool(self._body_contact[0])
 
+    def turned(self, time: float = 0.0) -> None:
+        """Take note of how B has turned since the last call.
+
+        Commands come in steps, and stiff servos turn the body in jerks: its velocity at the end of a tick is
+        systematically less than what it has turned by. What measures angular rates averages them.
+
+        Parameters
+        ----------
+        time : float
+            Time since the last call [s]; 0 for a body at rest.
+        """
+        if time:
+            self._mujoco.mju_subQuat(self._rates, self._orientation, self._before)
+        self._rates *= 1 / time if time else 0.0
+        self._before[:] = self._orientation
+
     def angular_rates(self) -> Float[np.ndarray, "3"]:
-        """Return the angular velocity of B, along its own axes, ``(3,)`` [rad/s]."""
-        rates: np.ndarray = self._rates.copy()
-        return rates
+        """Return the mean angular velocity of B along its own axes, as it was noted last, ``(3,)`` [rad/s]."""
+        return self._rates.copy()
 
     def ground_heights(self, terrain: Terrain) -> Float[np.ndarray, "rows columns"]:
         """Return the heights of the ground on a level grid around the body, as in `GroundHeights` [m].

@@ -167,6 +167,7 @@ class SimulatedPlant:
                 break
         self._timing = CommandTiming(self._table, TIMESTEP, angles)
         self._time, self._steps = 0.0, 0
+        self._measurement.turned()
         self._sampler = Sampler(self.sensors, self._exact(), seed=self._seed if seed is None else require_seed(seed))
 
     def step(self, output: ControlOutput, dt: float) -> SensorReadings:
@@ -204,7 +205,10 @@ class SimulatedPlant:
             raise InputError(f"dt is {dt:g} s; it must be greater than 0 and at most {_LONGEST_TICK:g} s")
         self._timing.command(self._steps, _checked(angles, self.robot.legs))
         self._time += dt
-        self._advance(round(self._time / TIMESTEP) - self._steps)
+        steps = round(self._time / TIMESTEP) - self._steps
+        self._advance(steps)
+        if steps:
+            self._measurement.turned(steps * TIMESTEP)
         return self._sampler.read(self._time, self._exact())
 
     def stop(self) -> None:

@@ -32,7 +32,7 @@ class HeadingFeedback:
     def __init__(self) -> None:
         self.behind, self.rate, self._offset, self._unmeasured = 0.0, 0.0, 0.0, 0.0
 
-    def step(self, valid: ValidReadings, commanded: float, dt: float, *, rests: bool) -> None:
+    def step(self, valid: ValidReadings, commanded: float, dt: float, *, rests: bool, still: bool) -> None:
         """Take in angular rates.
 
         Parameters
@@ -42,7 +42,9 @@ class HeadingFeedback:
         commanded, dt : float, float
             Rate at which the body is to turn, by the walk and by its pose [rad/s]; time since the last step [s].
         rests : bool
-            Whether the robot is to stand still: it does not turn then, and what is measured is the offset of the rates.
+            Whether the robot is to stand still: it does not turn then.
+        still : bool
+            Whether neither feet nor body move any more: what is measured then is the offset of the rates.
         """
         if valid.angular_rates is None:
             self._unmeasured += dt
@@ -54,7 +56,7 @@ class HeadingFeedback:
         faster = (math.sin(roll) * about_y + math.cos(roll) * about_z) / math.cos(pitch) - commanded
         if rests:
             self.rate, self.behind = 0.0, self.behind * (1 - dt / _MEMORY)
-            if abs(faster) < _STILL:
+            if still and abs(faster) < _STILL:
                 self._offset += min(dt / _LEARNS, 1.0) * (faster - self._offset)
             return
         behind = (self.behind - (faster - self._offset) * dt) * (1 - dt / _MEMORY)

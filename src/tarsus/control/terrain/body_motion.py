@@ -172,7 +172,8 @@ class BodyMotion:
         if self.tilt is not None:
             self.stance.step(level, rest - self.stance.shift, self.roughness.drawn_in, dt, walks=not rests)
         self._fit_height(state, over, footing.down, bears, dt)
-        self.heading.step(valid, turning, dt, rests=rests)
+        still = tick.standing and not (state.shift.rate.any() or state.posture.rate.any() or state.twist.value.any())
+        self.heading.step(valid, turning, dt, rests=rests, still=still)
         self.drift = self.stance.not_downhill(self.odometry.step(valid, bears, commanded, dt))
         self.stopped.step(valid, bears, velocity, dt, yaw=commanded.yaw)
         margins = [(places[leg], over[leg] - (self.reach.lowest[leg] + self.lowered)) for leg in bears]
