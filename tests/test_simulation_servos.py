@@ -1,5 +1,6 @@
 """Servo models: torque law, timing of commands, and what is assumed."""
 
+import dataclasses
 import math
 import re
 
@@ -11,7 +12,7 @@ from tarsus.control.robot_controller import RobotController
 from tarsus.errors import InputError, MissingDataError, UnknownNameError
 from tarsus.load.servo_limits import utilisation
 from tarsus.robot.catalogue import list_servos, load_servo
-from tarsus.robot.file import load_robot
+from tarsus.robot.file import list_robots, load_robot
 from tarsus.robot.known_servos import KNOWN_SERVOS
 from tarsus.robot.servo import Servo
 from tarsus.simulation import ServoModel, SimulatedPlant, model
@@ -93,6 +94,45 @@ def test_an_ideal_servo_is_a_spring_and_a_damper():
     servo = ServoModel.ideal(stiffness=60.0, damping=2.0)
     assert servo.torque(np.array([0.5, -3.0]), np.array([1.0, 2.0])) == pytest.approx([28.0, -184.0])
     assert "60 N m/rad" in servo.assumed[0]
+
+
+def scaled(robot, by):
+    """The robot with lengths by this factor, and masses by its cube, standing in a stance of the same shape."""
+    lengths = ("coxa", "femur", "tibia", "mount_position", "body_size", "body_com", "link_com", "foot_radius")
+    heights = {key: by * getattr(robot.gait, key) for key in ("body_height", "swing_height")}
+    return robot.replace(
+        **{key: by * np.asarray(getattr(robot, key)) for key in lengths if getattr(robot, key) is not None},
+        **{key: by**3 * np.asarray(getattr(robot, key)) for key in ("body_mass", "link_mass")},
+        gait=dataclasses.replace(robot.gait, **heights),
+        servos=((None,) * 3,) * robot.legs,
+    )
+
+
+@pytest.mark.parametrize("name", [name for name in list_robots() if load_robot(name).has_masses])
+def test_ideal_servos_are_those_of_the_robots_weight_and_size(name):
+    robot = load_robot(name)
+    assert ServoModel.ideal(robot) == ServoModel.ideal()
+    small, large = (ServoModel.ideal(scaled(robot, by)) for by in (0.3, 3.0))
+    assert small.stiffness < 10 < 100 < 1000 < large.stiffness
+    for servo in (small, large):
+        assert servo.damping == pytest.approx(servo.stiffness / 100)
+    # The square of the time constant is in proportion to the length, as that of a body that tips.
+    for servo, by in ((small, 0.3), (large, 3.0)):
+        assert 0.5 * by < servo.rotor_inertia / servo.stiffness / (0.005 / 100) < 2 * by
+    assert ServoModel.ideal(robot.replace(body_mass=None)) == ServoModel.ideal()
+
+
+@pytest.mark.no_cover
+@pytest.mark.parametrize("by", [0.4, 2.5])
+def test_in_physics_ideal_servos_carry_robots_of_any_size(by):
+    robot = scaled(STRIDER, by)
+    plant, controller = SimulatedPlant(robot, servos="ideal", sensors="blind"), RobotController(robot)
+    plant.start(controller.output)
+    for _ in range(200):
+        controller.step((0.2 * by, 0.0, 0.0), 0.01, plant.step(controller.output, 0.01))
+    body, commanded = plant.state.body.position, controller.output.body.position
+    assert body[2] == pytest.approx(commanded[2] + by * STRIDER.foot_radius[0], abs=0.003 * by)
+    assert body[0] == pytest.approx(commanded[0], rel=0.06)
 
 
 def test_the_supply_scales_torque_and_speed():

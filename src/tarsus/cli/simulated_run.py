@@ -199,7 +199,7 @@ def write_run(
 
 def _springs(robot: Robot, servos: str) -> JointSprings | None:
     """Return the springs of ideal servos; None for those of the robot's own."""
-    return JointSprings.uniform(robot, ServoModel.ideal().stiffness) if servos == "ideal" else None
+    return JointSprings.uniform(robot, ServoModel.ideal(robot).stiffness) if servos == "ideal" else None
 
 
 def _write_zarr(trace: Trace, path: Path) -> None:

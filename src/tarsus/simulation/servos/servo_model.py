@@ -9,8 +9,10 @@ from typing import TYPE_CHECKING, Self
 import numpy as np
 
 from tarsus.errors import InputError, MissingDataError
+from tarsus.kinematics.mass import known_weight
 from tarsus.load.servo_limits import at_supply
 from tarsus.representation import represented
+from tarsus.robot.robot import Robot
 from tarsus.robot.servo import Servo
 from tarsus.robot.servo_dynamics import NO_LOAD_SPEED, ROTOR_INERTIA, servo_dynamics
 from tarsus.simulation.servos.torque_law import drive_torque
@@ -89,23 +91,32 @@ class ServoModel:
                 raise InputError(f"{self.name}: {name} is {value:g} {unit}; it must be a finite number, not negative")
 
     @classmethod
-    def ideal(cls, *, stiffness: float = 100.0, damping: float = 1.0) -> Self:
+    def ideal(cls, robot: Robot | None = None, *, stiffness: float | None = None, damping: float | None = None) -> Self:
         """Return a servo that follows at once, with any torque: a spring and a damper.
 
         Parameters
         ----------
-        stiffness : float
-            Torque per position error [N m/rad].
-        damping : float
-            Torque per speed [N m s/rad].
+        robot : Robot, optional
+            The single robot it is for: joints are stiffer in a robot that is heavier than the presets, and softer with
+            less rotor inertia in a lighter one, whose feet would hit the ground too hard. Left out: like the presets.
+        stiffness : float, optional
+            Torque per position error [N m/rad]; left out, 100 N m/rad in robots like the presets.
+        damping : float, optional
+            Torque per speed [N m s/rad]; left out, 1 N m s/rad in robots like the presets.
         """
+        weight = 0.0 if robot is None else known_weight(robot)
+        length = 0.0 if robot is None else float((robot.femur + robot.tibia).mean())
+        stiffer = _beyond(weight * length, _IDEAL_TORQUES)
+        rotor = ROTOR_INERTIA * _beyond(weight * length**2, _IDEAL_INERTIAS)
+        stiffness = 100.0 * stiffer if stiffness is None else stiffness
+        damping = stiffer if damping is None else damping
+        described = f"{stiffness:.4g} N m/rad, {damping:.4g} N m s/rad, rotor inertia {rotor:.3g} kg m^2"
         return cls(
             name="ideal",
             control_stiffness=stiffness,
             damping=damping,
-            assumed=(
-                f"ideal servo: {stiffness:g} N m/rad, {damping:g} N m s/rad, rotor inertia {ROTOR_INERTIA:g} kg m^2",
-            ),
+            rotor_inertia=rotor,
+            assumed=(f"ideal servo: {described}",),
         )
 
     @classmethod
@@ -188,6 +199,14 @@ class ServoModel:
         return drive - self.joint_damping * speeds
 
 
+def _beyond(value: float, usual: tuple[float, float]) -> float:
+    """Return a value over the end of the usual range that it is beyond; 1 within that, and where it is unknown."""
+    least, most = usual
+    return value / min(max(value, least), most) if value else 1.0
+
+
+# Weight times length of femur and tibia, and times its square, between which ideal servos are the same: the presets.
+_IDEAL_TORQUES, _IDEAL_INERTIAS = (3.7, 8.5), (0.65, 2.4)
 _POSITIVE = {
     "stall_torque": "N m",
     "no_load_speed": "rad/s",

@@ -96,7 +96,7 @@ class ServoTable(NamedTuple):
 def _rows(robot: Robot, servos: Any) -> tuple[tuple[ServoModel, ...], ...]:
     if isinstance(servos, str):
         if servos == "ideal":
-            return ((ServoModel.ideal(),) * 3,) * robot.legs
+            return ((ServoModel.ideal(robot),) * 3,) * robot.legs
         if servos != "catalogue":
             raise UnknownNameError.of("choice of servos", servos, ("catalogue", "ideal"))
         return tuple(tuple(_of_joint(robot, leg, joint) for joint in range(3)) for leg in range(robot.legs))
