@@ -515,6 +515,25 @@ def test_a_switch_that_stays_open_is_told_by_the_feet_that_its_foot_lifts_off():
 
 
 def test_a_contact_that_is_missing_once_after_some_ticks_as_planned_is_not_lost():
+def test_a_robot_that_sinks_at_a_foot_does_not_stand_on_it_whatever_was_lifted_before():
+    contacts = FootContacts(6)
+    take_in(contacts, [True] * 6, [True] * 6, 0.02)
+    find_open(contacts, STANDING, (0.0, 0.0), 0.02)
+    for tick in range(60):
+        take_in(contacts, [False, tick % 4 > 1, *[True] * 4], [True] * 6, 0.02)
+        find_open(contacts, STANDING, (0.0, -0.05), 0.02)
+    assert contacts.is_open(0)
+    # In the air, and as it is put down on lower ground, it bears nothing: the tilt is no sign of a foot that gives way.
+    take_in(contacts, [False] + [True] * 5, [False] + [True] * 5, 0.02)
+    take_in(contacts, [False, False, *[True] * 4], [True] * 6, 0.02)
+    find_open(contacts, STANDING, (0.0, -0.05), 0.02)
+    assert contacts.tips(STANDING, 0.0) is None
+    assert contacts.is_open(0)
+    find_open(contacts, STANDING, (0.0, 0.1), 0.02)
+    assert contacts.tips(STANDING._replace(down=[True, False, False, True, True, True], centre=0.1 + 0.05j), 0.0) == 0
+    assert not contacts.is_open(0)
+
+
     contacts = FootContacts(6)
     take_in(contacts, [True] * 6, [True] * 6, 0.04, count=4)
     take_in(contacts, [False, *[True] * 5], [True] * 6, 0.04, count=4)

@@ -141,6 +141,8 @@ class FootContacts:
                 self._settled[leg] += dt
             if not on:
                 self._settled[leg] = 0.0
+                if self.is_open(leg):
+                    self._tilts[leg] = self._last or (0.0, 0.0)
             self.lifted[leg] = not on and (self.lifted[leg] or self._without[leg] > _LOST)
             stays = rests or (leaves and self._without[leg] < _LEAVES)
             self.standing[leg] = self._bears(leg) or (stays and self._settled[leg] > _SETTLED)
@@ -229,6 +231,10 @@ class FootContacts:
         """
         most = deeper + self._scale * _SINKS
         legs = [leg for leg, on in enumerate(footing.down) if on]
+        for leg in legs:
+            # A robot does not sink at a foot that stands: it was no switch that stays open, but a shin on an edge.
+            if self.is_open(leg) and self.sunk[leg] > most:
+                self._evidence[leg] = 0.0
         sinks = [leg for leg in legs if not self._bears(leg) and self.sunk[leg] > most and self.is_known(leg)]
         bears = [footing.places[leg] for leg in legs if self._bears(leg)]
         if not (sinks and bears) or holds(bears, footing.centre):

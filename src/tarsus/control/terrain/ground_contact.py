@@ -31,7 +31,7 @@ _HIGHER, _RISING, _DRAWN_BACK = 0.04, 0.12, 0.008
 _SHORT, _PAST, _DRAWS_BACK = 0.02, 0.03, 1.0
 # A foot that is deeper, on even ground, bears no load that is not felt, whatever its shin rests on [m]; nor does one on
 # rough ground that is this deep, over the body height.
-_HANGS, _HANGS_LOW = 0.05, 0.9
+_HANGS, _HANGS_LOW = 0.042, 0.9
 # Nor does one without contact that is this far over the expected ground, as before a wall: it is still to go down [m].
 _HIGH = 0.03
 # A foot without contact is no support where the body is lower than in its attitude by more, nor one whose rest foothold
