@@ -1,5 +1,6 @@
 """The parts of a walk that feels the ground: contacts, posture, reach, support, odometry."""
 
+import dataclasses
 import math
 from collections import deque
 
@@ -514,7 +515,6 @@ def test_a_switch_that_stays_open_is_told_by_the_feet_that_its_foot_lifts_off():
     assert not over_a_hole.is_open(0)
 
 
-def test_a_contact_that_is_missing_once_after_some_ticks_as_planned_is_not_lost():
 def test_a_robot_that_sinks_at_a_foot_does_not_stand_on_it_whatever_was_lifted_before():
     contacts = FootContacts(6)
     take_in(contacts, [True] * 6, [True] * 6, 0.02)
@@ -534,6 +534,7 @@ def test_a_robot_that_sinks_at_a_foot_does_not_stand_on_it_whatever_was_lifted_b
     assert not contacts.is_open(0)
 
 
+def test_a_contact_that_is_missing_once_after_some_ticks_as_planned_is_not_lost():
     contacts = FootContacts(6)
     take_in(contacts, [True] * 6, [True] * 6, 0.04, count=4)
     take_in(contacts, [False, *[True] * 5], [True] * 6, 0.04, count=4)
@@ -628,6 +629,30 @@ def test_a_foot_clears_the_ground_that_it_leaves_where_lower_one_is_too_far_to_b
         under = GroundUnder(expected, lowest=-0.2, highest=0.2)
         _, foot = _swinging(0.0, FeltFoot(), under, felt, 0.01, (0.0, 0.3, 0.0, 0j))
         assert foot.top == pytest.approx(top)
+
+
+@pytest.mark.parametrize("swing_height", [0.004, 0.012, 0.03, 0.05])
+@pytest.mark.parametrize("swing_time", [0.3, 0.6, 1.2])
+def test_a_foot_comes_down_once_it_has_travelled_and_by_the_end_of_its_swing(swing_height, swing_time):
+    felt = FeltInputs([], [], [], 0.0, 0.0, (0.0, 0.0), 0j, 0.0, 0j, 0.75, 1.0, swing_height, 0.4, 0.0, {})
+    under, height, foot, phase, dt = GroundUnder(0.0, lowest=-0.2, highest=0.2), 0.0, FeltFoot(), 0.0, 0.002
+    while height > 0.0 or phase < 0.4:
+        height, foot = _swinging(height, foot, under, felt, dt, (phase, swing_time, 0.0, 0j))
+        phase += dt / swing_time
+    assert 0.75 <= phase < 1.03
+
+
+@pytest.mark.no_cover
+def test_in_physics_feet_that_are_lifted_little_do_not_slide():
+    robot = tarsus.load_robot("phantomx")
+    robot = robot.replace(gait=dataclasses.replace(robot.gait, swing_height=0.0125))
+    plant, controller, slip = SimulatedPlant(robot, servos="ideal"), tarsus.RobotController(robot), 0.0
+    speed = 0.5 * WalkController(robot).top_speed((1.0, 0.0, 0.0))
+    plant.start(controller.output)
+    for _ in range(500):
+        controller.step((speed, 0.0, 0.0), 0.01, plant.step(controller.output, 0.01))
+        slip += 0.01 * float(plant.state.slip_speeds.mean())
+    assert slip < 0.015 * plant.state.body.position[0]
 
 
 @pytest.mark.parametrize("raised_at", [0.0, 0.2, 0.3, 0.4, 0.415])

@@ -186,7 +186,12 @@ def _swinging(
         height, speed, acceleration = quintic((height, speed, acceleration), top, whole, time / whole)
         return height, FeltFoot(speed, acceleration, top, top_phase, slide, drawn_back, bow)
     descent = (top - under.expected + felt.depth) / (part * swing_time) * felt.pace
-    over, fastest = height - under.expected, max(felt.scale * _LOWERING, descent)
+    over, travels = height - under.expected, (felt.travel - phase) * swing_time
+    slowest = felt.scale * _LOWERING
+    if travels > 0.0:
+        # A low swing does not end before the foot has travelled: it would slide over the ground.
+        slowest = min(slowest, max(over, 0.0) / travels * felt.pace)
+    fastest = max(slowest, descent)
     if over < felt.scale * _NEARS:
         fastest += felt.slow_contact * (felt.scale * _SLOW_CONTACT - fastest)
     fastest = min(fastest, felt.lowering, _fastest_contact(over, felt))
