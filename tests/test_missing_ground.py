@@ -23,6 +23,7 @@ from tarsus.control.terrain.roughness import Roughness
 from tarsus.control.terrain.support import Footing
 from tarsus.control.walk.felt_feet import FeltFoot
 from tarsus.control.walk.step_timing import StepTiming
+from tarsus.gait.swing_trajectory import quintic
 from tarsus.simulation import SensorSuite, SimulatedPlant, terrain
 
 NAMES = ("LF", "LM", "LR", "RR", "RM", "RF")
@@ -521,9 +522,9 @@ def test_a_foot_behind_the_body_that_loses_its_ground_has_met_an_edge_that_the_r
 class Walk:
     """A robot in physics, a strider if no other one is given."""
 
-    def __init__(self, ground, sensors="ideal", robot=None):
+    def __init__(self, ground, sensors="ideal", robot=None, servos="catalogue"):
         robot = robot or tarsus.load_robot("strider")
-        self.plant = SimulatedPlant(robot, terrain=ground, sensors=sensors)
+        self.plant = SimulatedPlant(robot, terrain=ground, sensors=sensors, servos=servos)
         self.controller = tarsus.RobotController(robot)
         self.output = self.controller.output
         self.plant.start(self.output)
@@ -565,9 +566,19 @@ def test_a_robot_stops_at_an_edge_in_ticks_of_20_ms_too():
 
 
 @pytest.mark.no_cover
+def test_legs_with_stiff_servos_that_collide_do_not_throw_the_robot_over():
+    # A foot that went on at its speed, and then rose along the face of a block, pulled the body down by 36 degrees.
+    robot, ground = tarsus.load_robot("makeyourpet"), terrain.Blocks(rise=0.06, size=0.15, clear=0.35, seed=5)
+    speed = 0.5 * tarsus.WalkController(robot).top_speed((1.0, 0.0, 0.0))
+    walk = Walk(ground, robot=robot, servos="ideal")
+    assert walk.go(speed, 1.2 / speed) > 1.0
+    assert walk.tilt < np.radians(18)
+
+
+@pytest.mark.no_cover
 def test_a_robot_stops_at_a_wall_says_so_and_walks_away_from_it():
-    walk = Walk(terrain.Step(rise=0.15, start=0.41))
-    stopped = walk.go(0.13, 4.0)
+    walk = Walk(terrain.Step(rise=0.3, start=0.41))
+    stopped = walk.go(0.13, 6.0)
     assert stopped < 0.3
     assert walk.named & {"front left", "front right"}
     # It neither pushes nor climbs, and tries other footholds once.
@@ -969,6 +980,11 @@ def test_a_foot_that_collides_is_drawn_back_from_where_it_is_measured():
             pace=1.0,
         )
         assert after.felt[0].drawn_back == pytest.approx(state.foot[0] - lag - 0.008)
+        # At once, so that a stiff leg does not drag on the obstacle: most of the way in a third of the time.
+        back, left = after.felt[0].drawn_back - state.foot[0], after.felt[0].top_phase - 0.3
+        at = complex(state.foot[0]), complex(after.swing_velocity[0]), complex(after.swing_acceleration[0])
+        reached, *_ = quintic(at, after.felt[0].drawn_back, left, 1 / 3)
+        assert 0.75 < (reached - state.foot[0]) / back < 1.0
     # The next time it is drawn back by 40 mm from where it is.
     again = state._replace(swing_phase=state.swing_phase + 0.6, felt=after.felt)
     missing = MissingGround(NAMES)

@@ -24,8 +24,9 @@ __all__ = ["met_ground", "not_sunk", "put_down", "supporting"]
 _CLEAR, _LANDING = 0.12, 0.55
 # How far a foot has risen that meets an obstacle [m].
 _LIFTED = 0.01
-# After a collision: how much higher the foot rises [m], in which time [s], and how far it is drawn back [m].
-_HIGHER, _RISING, _DRAWN_BACK = 0.04, 0.12, 0.008
+# After a collision: how much higher the foot rises [m], in which time [s], how far it is drawn back [m], and how fast
+# at first, over the mean speed: a stiff leg would drag on the obstacle as it rises, and pull the body down.
+_HIGHER, _RISING, _DRAWN_BACK, _AT_ONCE = 0.04, 0.12, 0.008, 3.0
 # A foot that goes down and touches something again, closer to its foothold than the first or farther past its collision
 # than the second, has met the ground [m]; the speed with which a foot is drawn back [m/s].
 _SHORT, _PAST, _DRAWS_BACK = 0.02, 0.03, 1.0
@@ -164,15 +165,19 @@ def _rising_again(state: GaitState, leg: int, reach: Reach, timing: StepTiming, 
     """Return the state with a foot that lags behind its command: it draws back from an obstacle and rises higher."""
     height, foot, foothold = float(state.ground_height[leg]), complex(state.foot[leg]), complex(state.foothold[leg])
     highest = state.elevation + reach.highest_on_way(leg, state.in_heading(foot), state.in_heading(foothold))[0]
-    top, way = state.felt[leg].top, foothold - foot
+    top, way, phase = state.felt[leg].top, foothold - foot, float(state.swing_phase[leg])
+    rises = min(_RISING / timing.swing_time, 1.0 - phase)
+    back = error - reach.scale * _DRAWN_BACK * way / max(abs(way), 1e-9)
     felt = _with(
         state.felt,
         leg,
         top=min((height if math.isnan(top) else max(top, height)) + reach.scale * _HIGHER, max(highest, height)),
-        top_phase=min(float(state.swing_phase[leg]) + _RISING / timing.swing_time, 1.0),
-        drawn_back=foot + error - reach.scale * _DRAWN_BACK * way / max(abs(way), 1e-9),
+        top_phase=phase + rises,
+        drawn_back=foot + back,
     )
-    return state._replace(felt=felt)
+    velocity, acceleration = state.swing_velocity.copy(), state.swing_acceleration.copy()
+    velocity[leg], acceleration[leg] = _AT_ONCE * back / rises, 0j
+    return state._replace(felt=felt, swing_velocity=velocity, swing_acceleration=acceleration)
 
 
 def _trying_again(
