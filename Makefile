@@ -73,6 +73,7 @@ truth: $(VENV)/.dev
 	$(BIN)/python docs/rough_ground.py
 	$(BIN)/python docs/gaits_on_ground.py
 	$(BIN)/python docs/other_presets.py
+	$(BIN)/python docs/random_robots.py
 	$(BIN)/python docs/seen_ground.py
 	$(BIN)/python docs/cross_slopes.py
 	$(BIN)/python docs/put_down.py

@@ -25,8 +25,8 @@ PAGE = Path(__file__).parent / "ground-measured.md"
 ROBOTS = ("strider", "phantomx", "makeyourpet")
 # Way that is commanded in each walk [m], and how near to the start the ground is level [m].
 WAY, CLEAR = 1.2, 0.35
-# A robot whose body is on the ground for longer has fallen [s].
-LIES = 1.0
+# A robot whose body is on the ground for longer has fallen [s]; time between two ticks [s].
+LIES, TICK = 1.0, 0.01
 
 
 def smooth(seed: int, height: float, length: float = 400) -> Any:
@@ -119,12 +119,17 @@ def walk(job: tuple[str, str, str, int]) -> Outcome:
     speed = case.pace * tarsus.WalkController(robot, gait).top_speed(course.tolist())
     plant = SimulatedPlant(robot, terrain=GROUNDS[ground](seed), sensors=case.sensors, servos=case.servos, seed=seed)
     controller = tarsus.RobotController(robot, gait, **case.options)
-    output, dt = controller.output, 0.01
-    plant.start(output)
-    for _ in range(round(case.stands / dt)):
-        output = controller.step((0.0, 0.0, 0.0), dt, plant.step(output, dt))
+    plant.start(controller.output)
+    for _ in range(round(case.stands / TICK)):
+        controller.step((0.0, 0.0, 0.0), TICK, plant.step(controller.output, TICK))
+    return walked_on(plant, controller, speed * course, WAY / speed)
+
+
+def walked_on(plant: SimulatedPlant, controller: tarsus.RobotController, twist: np.ndarray, time: float) -> Outcome:
+    """Return the outcome of a straight walk, for so long, of a robot that has started."""
+    speed, output, dt = float(np.linalg.norm(twist)), controller.output, TICK
     start, tilts, slip, lying, touched, fell = np.asarray(plant.state.body.position), [], 0.0, 0.0, False, False
-    ticks = round(WAY / speed / dt)
+    ticks = round(time / dt)
     for _ in range(ticks):
         readings = plant.step(output, dt)
         state = plant.state
@@ -136,8 +141,8 @@ def walk(job: tuple[str, str, str, int]) -> Outcome:
         fell = lying > LIES or tilts[-1] > math.pi / 4
         if fell:
             break
-        output = controller.step((speed * course).tolist(), dt, readings)
-    way = float((plant.state.body.position - start) @ course)
+        output = controller.step(twist.tolist(), dt, readings)
+    way = float((plant.state.body.position - start) @ twist) / speed
     return Outcome(
         way / (speed * dt * ticks),
         math.degrees(math.sqrt(np.mean(np.square(tilts)))),

@@ -205,7 +205,8 @@ def _beyond(value: float, usual: tuple[float, float]) -> float:
     return value / min(max(value, least), most) if value else 1.0
 
 
-# Weight times length of femur and tibia, and times its square, between which ideal servos are the same: the presets.
+# Weight times length of femur and tibia [N m], and times its square [N m^2], between which are all presets: their ideal
+# servos are the same.
 _IDEAL_TORQUES, _IDEAL_INERTIAS = (3.7, 8.5), (0.65, 2.4)
 _POSITIVE = {
     "stall_torque": "N m",
