@@ -39,6 +39,8 @@ _NEVER = 0.3
 # By how much a robot that does not tip sinks at a foot without contact, at most, besides how much deeper ground may be
 # [m].
 _SINKS = 0.01
+# How fast it may sink, at a foot whose switch is taken to be open, while readings are late [m/s].
+_FALLS = 0.4
 # Fewer feet bear no robot, unless something else holds it.
 _FEWEST = 2
 # Swing phase up to which contact that has not ceased since lift-off tells nothing.
@@ -233,7 +235,7 @@ class FootContacts:
         legs = [leg for leg, on in enumerate(footing.down) if on]
         for leg in legs:
             # A robot does not sink at a foot that stands: it was no switch that stays open, but a shin on an edge.
-            if self.is_open(leg) and self.sunk[leg] > most:
+            if self.is_open(leg) and self.sunk[leg] > most + _FALLS * self.age:
                 self._evidence[leg] = 0.0
         sinks = [leg for leg in legs if not self._bears(leg) and self.sunk[leg] > most and self.is_known(leg)]
         bears = [footing.places[leg] for leg in legs if self._bears(leg)]
