@@ -94,8 +94,8 @@ class ServoMonitor:
         self._stall_torque, self.failed = stall_torque, FailedJoints(len(stall_torque))
         # Durations and commands of the last ticks, and the sum of the durations [s].
         self._commands: deque[tuple[float, Float[np.ndarray, "legs 3"]]] = deque()
-        # It looks in the ticks in which the body is looked at, too: the others are short.
-        self._span, self._time, self._since = 0.0, 0.0, _PERIOD
+        # It looks at once, and so in the ticks in which the body is looked at: the others are short.
+        self._span = self._time = self._since = self._wait = 0.0
         self._evidence: Float[np.ndarray, "2 legs 3"] | None = None
         # Legs that have been found, and those whose feet touched as joints were last looked at.
         self._found, self._touched = set[int](), set[int]()
@@ -121,9 +121,9 @@ class ServoMonitor:
         if valid.joint_angles is None:
             return
         self._since += dt
-        if self._since >= _PERIOD:
+        if self._since >= self._wait:
             self._look(commanded, valid, self._since)
-            self._since = 0.0
+            self._since, self._wait = 0.0, _PERIOD
 
     def _look(self, commanded: Float[np.ndarray, "legs 3"], valid: ValidReadings, dt: float) -> None:
         """Change the evidence against joints by their errors; those of legs that are not measured are NaN."""
