@@ -56,19 +56,25 @@ def standing(count=6):
 
 def halved(robot):
     """A robot of half the size: dynamically similar, but for dead bands and delays of its servos."""
+    return scaled(robot, 0.5)
+
+
+def scaled(robot, by):
+    """A robot of another size: dynamically similar, but for dead bands and delays of its servos."""
     lengths = ("mount_position", "coxa", "femur", "tibia", "foot_radius", "link_com", "body_com", "body_size")
-    gait = replace(robot.gait, body_height=robot.gait.body_height / 2, swing_height=robot.gait.swing_height / 2)
-    masses = {name: getattr(robot, name) / 8 for name in ("link_mass", "body_mass")}
+    gait = replace(robot.gait, body_height=by * robot.gait.body_height, swing_height=by * robot.gait.swing_height)
+    masses = {name: by**3 * getattr(robot, name) for name in ("link_mass", "body_mass")}
     servos = tuple(
         tuple(
             replace(
                 servo,
-                name=f"half {servo.name}",
-                stall_torque=servo.stall_torque / 16,
-                no_load_speed=servo.no_load_speed * np.sqrt(2),
+                name=f"{by} {servo.name}",
+                stall_torque=by**4 * servo.stall_torque,
+                no_load_speed=servo.no_load_speed / np.sqrt(by),
             )
             for servo in row
         )
         for row in robot.servos
     )
-    return replace(robot, gait=gait, servos=servos, **masses, **{name: getattr(robot, name) / 2 for name in lengths})
+    sizes = {name: by * value for name in lengths if (value := getattr(robot, name)) is not None}
+    return replace(robot, gait=gait, servos=servos, **masses, **sizes)

@@ -1,6 +1,5 @@
 """Servo models: torque law, timing of commands, and what is assumed."""
 
-import dataclasses
 import math
 import re
 
@@ -8,6 +7,7 @@ import mujoco
 import numpy as np
 import pytest
 
+from sample_robots import scaled
 from tarsus.control.robot_controller import RobotController
 from tarsus.errors import InputError, MissingDataError, UnknownNameError
 from tarsus.load.servo_limits import utilisation
@@ -94,18 +94,6 @@ def test_an_ideal_servo_is_a_spring_and_a_damper():
     servo = ServoModel.ideal(stiffness=60.0, damping=2.0)
     assert servo.torque(np.array([0.5, -3.0]), np.array([1.0, 2.0])) == pytest.approx([28.0, -184.0])
     assert "60 N m/rad" in servo.assumed[0]
-
-
-def scaled(robot, by):
-    """The robot with lengths by this factor, and masses by its cube, standing in a stance of the same shape."""
-    lengths = ("coxa", "femur", "tibia", "mount_position", "body_size", "body_com", "link_com", "foot_radius")
-    heights = {key: by * getattr(robot.gait, key) for key in ("body_height", "swing_height")}
-    return robot.replace(
-        **{key: by * np.asarray(getattr(robot, key)) for key in lengths if getattr(robot, key) is not None},
-        **{key: by**3 * np.asarray(getattr(robot, key)) for key in ("body_mass", "link_mass")},
-        gait=dataclasses.replace(robot.gait, **heights),
-        servos=((None,) * 3,) * robot.legs,
-    )
 
 
 @pytest.mark.parametrize("name", [name for name in list_robots() if load_robot(name).has_masses])
