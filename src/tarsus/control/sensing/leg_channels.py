@@ -123,14 +123,16 @@ class VectorChannel(_LegChannel):
     def _plain(self, value: Shaped[np.ndarray, "..."]) -> tuple[Vector, ...] | None:
         if value.dtype is not _FLOAT:
             return None
-        numbers = value.ravel().tolist()
-        norm = math.hypot(*numbers)
-        if not norm <= self._small:
-            inside = all(map(le, self._low, numbers)) and (norm <= self._below or all(map(le, numbers, self._high)))
-            if not inside:
-                return None
-        plain: tuple[Vector, ...] = self._by_leg(tuple(numbers))
+        numbers: list[float] = value.ravel().tolist()
+        plain: tuple[Vector, ...] | None = self._by_leg(tuple(numbers)) if self._contains(numbers) else None
         return plain
+
+    def _contains(self, numbers: list[float]) -> bool:
+        """Return whether the numbers of all legs are plausible."""
+        norm = math.hypot(*numbers)
+        if norm <= self._small:
+            return True
+        return all(map(le, self._low, numbers)) and (norm <= self._below or all(map(le, numbers, self._high)))
 
     def _read_leg(self, leg: int, value: Any) -> Vector | str:
         alone = as_number(value) if self._accept_z and type(value) is not list else math.nan
@@ -162,12 +164,12 @@ class JointAngleChannel(VectorChannel):
         # The last plausible angles of all legs, NaN before, and when those of each leg were read.
         self._last, self._read, self._speed = [*_NOT_NUMBERS] * len(legs), [0.0] * len(legs), speed
 
-    def _plain(self, value: Shaped[np.ndarray, "..."]) -> tuple[Vector, ...] | None:
-        plain = super()._plain(value)
-        if plain is None or not math.dist(numbers := value.ravel().tolist(), self._last) <= _JUMP:
-            return None
+    def _contains(self, numbers: list[float]) -> bool:
+        """Return whether the angles of all legs are plausible, which are the last ones then."""
+        if not (math.dist(numbers, self._last) <= _JUMP and super()._contains(numbers)):
+            return False
         self._last, self._read = numbers, [self.now] * len(self._read)
-        return plain
+        return True
 
     def _read_leg(self, leg: int, value: Any) -> Vector | str:
         angles = super()._read_leg(leg, value)
