@@ -904,6 +904,25 @@ def test_a_switch_that_is_stuck_does_not_stop_the_robot():
     assert controller.place[0] > 0.8
 
 
+def test_contact_that_does_not_cease_tells_of_an_obstacle_once_where_the_switch_has_opened_before():
+    controller, since, stuck = WalkController(STRIDER), list[int](), False
+    roughness = controller._walk.ground.body.roughness
+    for tick in range(300):
+        contacts = controller.feet[:, 2] <= 1e-4
+        # From a stance on that follows a swing in which the switch opened.
+        stuck |= tick > 80 and contacts[1]
+        contacts[1] |= stuck
+        controller.step((0.1, 0.0, 0.0), 0.02, SensorReadings(contacts=contacts, attitude=(0.0, 0.0)))
+        gait = controller._tick.gait
+        if gait.felt[1].drawn_back is not None and not gait.down[1]:
+            assert gait.ground_height[1] > 0.02
+            since.append(tick)
+    # A foot that presses on an obstacle from lift-off rises over it; from its next swing on, the switch is stuck.
+    assert since
+    assert max(since) - min(since) < 20
+    assert 0.0 < roughness.value < 0.02
+
+
 def test_a_foot_that_meets_an_obstacle_rises_over_it():
     controller = WalkController(STRIDER)
     tops = []

@@ -36,8 +36,7 @@ _OPEN_AFTER, _MOST_LIFT = 0.4, 4.0
 _UNHELD, _TIPS = 0.15, 0.012
 # How long that one has had no contact: the switch of one that has just lost it works [s].
 _NEVER = 0.3
-# By how much a robot that does not tip sinks at a foot without contact, at most, besides how much deeper ground may be
-# [m].
+# By how much a robot that does not tip sinks at a foot without contact, besides how much deeper ground may be [m].
 _SINKS = 0.01
 # How fast it may sink, at a foot whose switch is taken to be open, while readings are late [m/s].
 _FALLS = 0.4
@@ -56,12 +55,9 @@ class Search(NamedTuple):
         The leg; how far below the expected ground its foot is [m].
     falls, lasts : bool
         Whether the foot goes down; whether it has not searched for long.
-    sunk : float
-        By how much the body has sunk at the foot since that lost its contact [m].
-    raised : float
-        By how much the foot is higher than commanded, where that is measured [m].
-    leans : float
-        By how much the body is lower there than in the attitude to keep [m].
+    sunk, raised, leans : float
+        By how much the body has sunk at the foot since that lost its contact; by how much the foot is higher than
+        commanded, where that is measured; by how much the body is lower there than in the attitude to keep [m].
     """
 
     leg: int
@@ -85,8 +81,8 @@ class FootContacts:
     ----------
     estimator : ContactEstimator
         Estimates the contacts.
-    lifted : list of bool
-        Whether a swinging foot has been without contact since it lifted off.
+    lifted, opened : list of bool
+        Whether a swinging foot has been without contact since it lifted off; whether it was so in the last swing.
     standing : list of bool
         Whether each foot that should stand does, but for the shortest of interruptions.
     age, estimated : float, bool
@@ -98,7 +94,8 @@ class FootContacts:
 
     def __init__(self, legs: int, *, scale: float = 1.0) -> None:
         self.estimator = ContactEstimator(legs)
-        self.lifted, self.standing, self.age = [False] * legs, [True] * legs, 0.0
+        self.lifted, self.opened, self.standing, self.age = [False] * legs, [False] * legs, [True] * legs, 0.0
+        self._down: Sequence[bool] = [True] * legs
         self.estimated, self._scale, self._unheld, self._tilt = False, scale, 0.0, (0.0, 0.0)
         # The last tilt that was measured, and that of each foot when it lost its contact [rad].
         self._last: RollPitch | None = None
@@ -145,12 +142,15 @@ class FootContacts:
                 self._settled[leg] = 0.0
                 if self.is_open(leg):
                     self._tilts[leg] = self._last or (0.0, 0.0)
+            if on and not self._down[leg]:
+                self.opened[leg] = self.lifted[leg]
             self.lifted[leg] = not on and (self.lifted[leg] or self._without[leg] > _LOST)
             stays = rests or (leaves and self._without[leg] < _LEAVES)
             self.standing[leg] = self._bears(leg) or (stays and self._settled[leg] > _SETTLED)
             # Feet of a robot that rests are hardly lowered, those of one that is carried find nothing: they wait.
             searches = on and not (rests or carried or self.standing[leg])
             self._searched[leg] = (self._searched[leg] + dt) * searches
+        self._down = down
 
     def find_open(
         self, footing: Footing, tilt: RollPitch | None, dt: float, *, low: list[bool], depths: Sequence[float]

@@ -22,8 +22,8 @@ __all__ = ["met_ground", "not_sunk", "put_down", "supporting"]
 
 # Swing phases from which on contact is a collision, and from which on it is the ground.
 _CLEAR, _LANDING = 0.12, 0.55
-# How far a foot has risen that meets an obstacle [m].
-_LIFTED = 0.01
+# How far a foot has risen that meets an obstacle, and one whose contact has not ceased since lift-off [m].
+_LIFTED, _RISEN = 0.01, 0.02
 # After a collision: how much higher the foot rises [m], in which time [s], how far it is drawn back [m], and how fast
 # at first, over the mean speed: a stiff leg would drag on the obstacle as it rises, and pull the body down.
 _HIGHER, _RISING, _DRAWN_BACK, _AT_ONCE = 0.04, 0.12, 0.008, 3.0
@@ -66,7 +66,7 @@ def met_ground(
     contacts, reach, landed, elevation = body.contacts, body.reach, list[int](), state.elevation
     places = state.in_heading(state.foot).tolist()
     for leg, (down, phase) in enumerate(zip(state.down.tolist(), state.swing_phase.tolist(), strict=True)):
-        foot, meets = state.felt[leg], contacts.estimator.reads(leg) and contacts.lifted[leg]
+        foot, meets = state.felt[leg], contacts.estimator.reads(leg) and (contacts.lifted[leg] or contacts.opened[leg])
         if down or phase <= _CLEAR:
             under_way = foot.top > float(state.ground_height[leg]) or foot.slide
             if (contacts.feels(leg) or leg in stopped) and missing.tries(leg, places[leg]) and not under_way:
@@ -94,7 +94,11 @@ def met_ground(
                     body.roughness.landed(min(off, max(off - sunk, 0.0)))
                 state = _landed(state, leg, timing, pace)
                 landed.append(leg)
-        elif (meets or leg in stopped) and not leaves and _collides(state, leg, contacts, scale=reach.scale):
+        elif (
+            (meets or leg in stopped)
+            and not leaves
+            and _collides(state, leg, contacts, stopped=leg in stopped, scale=reach.scale)
+        ):
             body.roughness.collided()
             state = _rising_again(state, leg, reach, timing, error(leg))
     return state, landed
@@ -133,11 +137,12 @@ def _landed(state: GaitState, leg: int, timing: StepTiming, pace: float) -> Gait
     return land(state, [leg])
 
 
-def _collides(state: GaitState, leg: int, contacts: FootContacts, *, scale: float) -> bool:
+def _collides(state: GaitState, leg: int, contacts: FootContacts, *, scale: float, stopped: bool = False) -> bool:
     """Return whether a foot that feels contact in the first half of its swing has met an obstacle."""
     # A contact is that of a moment ago, and the foot lags behind its command: it was lower.
     then = float(state.ground_height[leg]) - max(state.felt[leg].speed, 0.0) * (contacts.age + USUAL_LAG)
-    return state.felt[leg].drawn_back is None and then - float(state.start_height[leg]) > scale * _LIFTED
+    least = scale * (_LIFTED if stopped or contacts.lifted[leg] else _RISEN)
+    return state.felt[leg].drawn_back is None and then - float(state.start_height[leg]) > least
 
 
 def _stands_below(state: GaitState, leg: int, contacts: FootContacts, *, scale: float) -> bool:
