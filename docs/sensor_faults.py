@@ -38,13 +38,15 @@ SUITES: dict[str, Any] = {
     "5 % of contacts wrong": with_sensors(contacts=FootSwitch(flips=0.05)),
     "attitude with 1 deg of noise and bias": with_sensors(attitude=ONE_DEGREE),
 }
-# The switch that is stuck, and what it reads; a name with a comma begins with that of the sensors.
-STUCK: dict[str, tuple[int, bool]] = {
-    "switch of the front left foot open": (0, False),
-    "switch of the middle left foot open": (1, False),
-    "switch of the front left foot closed": (0, True),
-    "50 ms late, switch of the front left foot open": (0, False),
-    "50 ms late, switch of the middle right foot open": (4, False),
+# The switch that is stuck, what it reads, and from when on [s]; a name with a comma begins with that of the sensors.
+STUCK: dict[str, tuple[int, bool, float]] = {
+    "switch of the front left foot open": (0, False, 0.0),
+    "switch of the middle left foot open": (1, False, 0.0),
+    "switch of the front left foot open after 3 s": (0, False, 3.0),
+    "switch of the front left foot closed": (0, True, 0.0),
+    "switch of the middle left foot closed after 3 s": (1, True, 3.0),
+    "50 ms late, switch of the front left foot open": (0, False, 0.0),
+    "50 ms late, switch of the middle right foot open": (4, False, 0.0),
 }
 LAG = "50 ms of servo lag"
 FAULTS = ("none", *SUITES, LAG, *STUCK)
@@ -64,10 +66,10 @@ def walk(name: str, ground: str, fault: str, seed: int) -> tuple[float, float]:
     output = controller.output
     plant.start(output)
     start, tilts, ticks = plant.state.body.position[0], [], round(WAY / speed / dt)
-    for _ in range(ticks):
+    leg, value, since = STUCK.get(fault, (0, False, math.inf))
+    for tick in range(ticks):
         readings = plant.step(output, dt)
-        if fault in STUCK:
-            leg, value = STUCK[fault]
+        if tick * dt >= since:
             contacts = np.array(readings.contacts)
             contacts[leg] = value
             readings = dataclasses.replace(readings, contacts=contacts)

@@ -915,7 +915,6 @@ def test_contact_that_does_not_cease_tells_of_an_obstacle_once_where_the_switch_
         controller.step((0.1, 0.0, 0.0), 0.02, SensorReadings(contacts=contacts, attitude=(0.0, 0.0)))
         gait = controller._tick.gait
         if gait.felt[1].drawn_back is not None and not gait.down[1]:
-            assert gait.ground_height[1] > 0.02
             since.append(tick)
     # A foot that presses on an obstacle from lift-off rises over it; from its next swing on, the switch is stuck.
     assert since
@@ -1074,21 +1073,25 @@ def test_while_contacts_are_as_planned_they_are_looked_at_now_and_then_and_a_cha
 def test_a_foot_that_has_just_lifted_off_may_touch_the_ground_still_and_not_again():
     contacts, down = FootContacts(6), [False] + [True] * 5
     phases, touching = np.zeros(6), [True] * 6
+
+    def as_planned(readings, standing, at):
+        return contacts.estimator.as_planned(readings, standing, at, lifted=contacts.lifted)
+
     for _ in range(3):
         take_in(contacts, touching, [True] * 6, 0.04)
-    assert contacts.as_planned(touching, [True] * 6, phases)
+    assert as_planned(touching, [True] * 6, phases)
     phases[0] = 0.1
-    assert contacts.as_planned(touching, down, phases)
-    assert contacts.as_planned(down, down, phases)
+    assert as_planned(touching, down, phases)
+    assert as_planned(down, down, phases)
     # Another foot has lost its contact, and the contact has not ceased by the time at which it has to.
-    assert not contacts.as_planned([False, False, *touching[2:]], down, phases)
-    assert not contacts.as_planned(touching, down, phases + 0.3)
+    assert not as_planned([False, False, *touching[2:]], down, phases)
+    assert not as_planned(touching, down, phases + 0.3)
     take_in(contacts, down, down, 0.04)
     assert contacts.lifted[0]
-    assert contacts.as_planned(down, down, phases)
+    assert as_planned(down, down, phases)
     # A foot that has left the ground meets an obstacle.
-    assert not contacts.as_planned(touching, down, phases)
-    assert not contacts.as_planned(None, down, phases)
+    assert not as_planned(touching, down, phases)
+    assert not as_planned(None, down, phases)
 
 
 @pytest.mark.parametrize("last", [4, 5, 6, 7])

@@ -4,6 +4,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from jaxtyping import Float
 
 __all__ = ["ContactEstimator"]
 
@@ -15,6 +21,8 @@ _ERROR, _WEIGHT, _GREATEST_ERROR = 0.001, 600.0, 0.2
 _MEMORY = 3000.0
 # A contact that has not been measured for longer is unknown [s].
 _TIMEOUT = 0.15
+# Swing phase up to which contact that has not ceased since lift-off tells nothing.
+_RISING = 0.3
 
 
 class ContactEstimator:
@@ -78,3 +86,35 @@ class ContactEstimator:
     def reads(self, leg: int) -> bool:
         """Return whether a foot bears load, more probably than not, and its last reading says so."""
         return self.touching[leg] and self._last[leg][1]
+
+    def as_planned(
+        self,
+        readings: Sequence[bool | None] | None,
+        down: Sequence[bool],
+        phases: Float[np.ndarray, "legs"],
+        *,
+        lifted: Sequence[bool],
+    ) -> bool:
+        """Return whether the feet touch the ground that should, and no others, and that is certain.
+
+        Parameters
+        ----------
+        readings : sequence of (bool or None), or None
+            Which feet touch the ground, as measured; None where nothing is.
+        down : sequence of bool
+            Which feet should stand.
+        phases : array, shape (legs,)
+            Swing phases of the others: those that have just lifted off may touch the ground still, or not any more.
+        lifted : sequence of bool
+            Which of them have been without contact since.
+        """
+        if readings is None:
+            return False
+        if list(readings) == down == self.touching and all(self.certain):
+            return True
+        feet = zip(readings, down, self.touching, self.certain, phases.tolist(), lifted, strict=True)
+        return all(
+            (certain and reading is on is touches)
+            or not (on or phase > _RISING or reading is None or (reading and off))
+            for reading, on, touches, certain, phase, off in feet
+        )

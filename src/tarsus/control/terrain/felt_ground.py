@@ -15,10 +15,9 @@ from tarsus.control.sensing.foot_loads import FootLoads
 from tarsus.control.sensing.swing_monitor import USUAL_LAG, SwingMonitor
 from tarsus.control.sensing.validation import ReadingsValidator, rejections
 from tarsus.control.terrain.body_motion import BodyMotion
-from tarsus.control.terrain.foot_contacts import Search
-from tarsus.control.terrain.ground_contact import met_ground, not_sunk, put_down, supporting
+from tarsus.control.terrain.ground_contact import hovering, met_ground, not_sunk, put_down, supporting
 from tarsus.control.terrain.missing_ground import SLOW, MissingGround
-from tarsus.control.terrain.support import Footing, Support, Tipping, along_gravity, off_commanded, sunk_at
+from tarsus.control.terrain.support import Footing, Search, Support, Tipping, along_gravity, off_commanded, sunk_at
 from tarsus.control.transition.executor import TransitionExecutor
 from tarsus.control.transition.foothold_transfer import FootholdTransfer
 from tarsus.control.walk.felt_feet import FeltFoot, FeltInputs, GroundUnder, travel_share
@@ -121,7 +120,7 @@ class FeltGround:
         self.body.since, self._unread, self._ticks = self.body.since + dt, self._unread + dt, self._ticks + 1
         self.body.level(valid.attitude, state)
         kept = self._inputs is not None and not (stopped or self.body.looks)
-        if kept and self.contacts.as_planned(measured, down, state.swing_phase):
+        if kept and self.contacts.estimator.as_planned(measured, down, state.swing_phase, lifted=self.contacts.lifted):
             return state, []
         dt, ticks, self._unread, self._ticks, self._inputs = self._unread, self._ticks, 0.0, 0, None
         self.body.see(valid.attitude, state, dt)
@@ -141,8 +140,7 @@ class FeltGround:
         state, landed = met_ground(
             state, self.body, self.missing, stopped=stopped, error=error, timing=timing, pace=pace
         )
-        waits = self.missing.refuses and self.support.halts
-        if self.missing.tips or self.condition.carried or waits:
+        if self.missing.tips or self.condition.carried or (self.missing.refuses and self.support.halts):
             state, swung = put_down(state, timing=timing, pace=pace)
             landed += swung
         return state, landed
@@ -237,7 +235,8 @@ class FeltGround:
         if self.condition.carried:
             missing.forget()
             self.ground.plane = FootPlane()
-        held = [self.condition.in_air or on for on in contacts.standing]
+        contacts.hovering = hovering(state, contacts, depths)
+        held = [self.condition.in_air or contacts.stands(leg) for leg in range(len(depths))]
         stands = [on and not missing.steps_back(leg, footing.places[leg]) for leg, on in enumerate(held)]
         missing.sees(self.ground, footholds.rest.tolist())
         waits = self.condition.carried or (self._rests and self.support.held and near == footing.down)
@@ -268,14 +267,15 @@ class FeltGround:
     def _under(self, state: GaitState, leg: int, place: complex, *, down: bool) -> GroundUnder:
         """Return the ground under a foot in the air or without contact, here in the heading frame."""
         heading = cmath.exp(1j * state.yaw)
-        known = not self.condition.in_air and self.contacts.is_known(leg) and (down or self.contacts.lifted[leg])
+        lifted = self.contacts.lifted[leg]
+        known = not self.condition.in_air and self.contacts.is_known(leg) and (down or lifted)
         stays = self.missing.gives_up(leg) or (down and self.missing.is_raised(-sunk_at(place, self.body.off)))
         goal = place if down else state.in_heading(complex(state.foothold[leg]))
         reach, rests = self.body.reach, self._rests and self.support.held
         lowest = max(reach.lowest[leg], self.ground.at(goal) - _NEAR) if rests else reach.lowest[leg]
         straight, bowed = reach.highest_on_way(leg, place, goal)
         room = (lowest if known and not stays else None, straight)
-        found = self.ground.under(place, goal, state.elevation, room, clears=not self._loads.estimated)
+        found = self.ground.under(place, goal, state.elevation, room, clears=lifted and not self._loads.estimated)
         back = state.origin + self.missing.places[leg] * heading if leg in self.missing.places else None
         return found._replace(bow=heading * reach.bows[leg], bowed=state.elevation + bowed, place=back)
 
@@ -285,8 +285,8 @@ class FeltGround:
         waits = any((self.body.slope.holds, condition.carried, missing.refuses, missing.tips))
         legs = [leg for leg, on in enumerate(footing.down) if on and not (leg in missing.places or (due and due[leg]))]
         stays = (self.support.holds(legs, footing, anew=not self.body.since) and not (lifts and waits)) or due is None
-        stays, lifts = stays and not condition.fallen, lifts and not condition.fallen
-        self.support.step(stays=stays, lifts=lifts, dt=dt, swing_time=swing_time, most=missing.pace)
+        up = not condition.fallen
+        self.support.step(stays=stays and up, lifts=lifts and up, dt=dt, swing_time=swing_time, most=missing.pace)
 
     @property
     def limitations(self) -> tuple[Limitation, ...]:

@@ -4,18 +4,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, NamedTuple
-
-import numpy as np
 
 from tarsus.control.readings import RollPitch
 from tarsus.control.sensing.contact_estimator import ContactEstimator
 from tarsus.control.terrain.support import Footing, holds, sunk_at
 
-if TYPE_CHECKING:
-    from jaxtyping import Float
-
-__all__ = ["FootContacts", "Search"]
+__all__ = ["FootContacts"]
 
 # A foot that has been without contact for longer has left the ground, or has lost it [s].
 _LOST = 0.03
@@ -40,33 +34,12 @@ _NEVER = 0.3
 _SINKS = 0.01
 # How fast it may sink, at a foot whose switch is taken to be open, while readings are late [m/s].
 _FALLS = 0.4
+# In how many swings in a row the contact of a foot does not cease whose switch stays closed.
+_STAYS_CLOSED = 2
+# After how many landings a switch stays open for sure: a shin does not rest on an edge for that long.
+_SURELY_OPEN = 2
 # Fewer feet bear no robot, unless something else holds it.
 _FEWEST = 2
-# Swing phase up to which contact that has not ceased since lift-off tells nothing.
-_RISING = 0.3
-
-
-class Search(NamedTuple):
-    """A foot that should stand and feels nothing.
-
-    Attributes
-    ----------
-    leg, depth : int, float
-        The leg; how far below the expected ground its foot is [m].
-    falls, lasts : bool
-        Whether the foot goes down; whether it has not searched for long.
-    sunk, raised, leans : float
-        By how much the body has sunk at the foot since that lost its contact; by how much the foot is higher than
-        commanded, where that is measured; by how much the body is lower there than in the attitude to keep [m].
-    """
-
-    leg: int
-    depth: float
-    falls: bool
-    lasts: bool
-    sunk: float = 0.0
-    raised: float = 0.0
-    leans: float = 0.0
 
 
 class FootContacts:
@@ -81,8 +54,8 @@ class FootContacts:
     ----------
     estimator : ContactEstimator
         Estimates the contacts.
-    lifted, opened : list of bool
-        Whether a swinging foot has been without contact since it lifted off; whether it was so in the last swing.
+    lifted : list of bool
+        Whether a swinging foot has been without contact since it lifted off.
     standing : list of bool
         Whether each foot that should stand does, but for the shortest of interruptions.
     age, estimated : float, bool
@@ -90,12 +63,18 @@ class FootContacts:
         angles.
     sunk : list of float
         By how much the body has sunk at each foot by its tilt since that lost its contact [m].
+    hovering : list of int
+        Legs whose feet have landed above the ground, as their switches stay closed: they bear no load.
     """
 
     def __init__(self, legs: int, *, scale: float = 1.0) -> None:
         self.estimator = ContactEstimator(legs)
-        self.lifted, self.opened, self.standing, self.age = [False] * legs, [False] * legs, [True] * legs, 0.0
+        self.lifted, self.standing, self.age = [False] * legs, [True] * legs, 0.0
+        self.hovering = list[int]()
+        # Which feet were to stand; in how many swings in a row each switch has stayed closed; how often its foot has
+        # landed since it was taken to be open.
         self._down: Sequence[bool] = [True] * legs
+        self._closed, self._landings = [_STAYS_CLOSED] * legs, [0] * legs
         self.estimated, self._scale, self._unheld, self._tilt = False, scale, 0.0, (0.0, 0.0)
         # The last tilt that was measured, and that of each foot when it lost its contact [rad].
         self._last: RollPitch | None = None
@@ -136,14 +115,17 @@ class FootContacts:
                 # A foot that stands has lost its contact in the last tick: before that, all was as planned.
                 self._without[leg] += dt / count if on and not self._without[leg] else dt
             else:
-                self._without[leg], self._evidence[leg] = 0.0, 0.0
+                self._without[leg], self._evidence[leg], self._landings[leg] = 0.0, 0.0, 0
                 self._settled[leg] += dt
             if not on:
                 self._settled[leg] = 0.0
                 if self.is_open(leg):
                     self._tilts[leg] = self._last or (0.0, 0.0)
             if on and not self._down[leg]:
-                self.opened[leg] = self.lifted[leg]
+                self._landings[leg] += self.is_open(leg)
+                self._closed[leg] += not self.lifted[leg]
+            if self._without[leg] > _LOST:
+                self._closed[leg] = 0
             self.lifted[leg] = not on and (self.lifted[leg] or self._without[leg] > _LOST)
             stays = rests or (leaves and self._without[leg] < _LEAVES)
             self.standing[leg] = self._bears(leg) or (stays and self._settled[leg] > _SETTLED)
@@ -235,7 +217,8 @@ class FootContacts:
         legs = [leg for leg, on in enumerate(footing.down) if on]
         for leg in legs:
             # A robot does not sink at a foot that stands: it was no switch that stays open, but a shin on an edge.
-            if self.is_open(leg) and self.sunk[leg] > most + _FALLS * self.age:
+            unsure = self.is_open(leg) and self._landings[leg] < _SURELY_OPEN
+            if unsure and self.sunk[leg] > most + _FALLS * self.age:
                 self._evidence[leg] = 0.0
         sinks = [leg for leg in legs if not self._bears(leg) and self.sunk[leg] > most and self.is_known(leg)]
         bears = [footing.places[leg] for leg in legs if self._bears(leg)]
@@ -243,39 +226,29 @@ class FootContacts:
             return None
         return max(sinks, key=self.sunk.__getitem__)
 
-    def as_planned(
-        self, readings: Sequence[bool | None] | None, down: Sequence[bool], phases: Float[np.ndarray, "legs"]
-    ) -> bool:
-        """Return whether the feet touch the ground that should, and no others, and that is certain.
-
-        Parameters
-        ----------
-        readings : sequence of (bool or None), or None
-            Which feet touch the ground, as measured; None where nothing is.
-        down : sequence of bool
-            Which feet should stand.
-        phases : array, shape (legs,)
-            Swing phases of the others: those that have just lifted off may touch the ground still, or not any more.
-        """
-        known = self.estimator
-        if readings is None:
-            return False
-        if list(readings) == down == known.touching and all(known.certain):
-            return True
-        feet = zip(readings, down, known.touching, known.certain, phases.tolist(), self.lifted, strict=True)
-        return all(
-            (certain and reading is on is touches)
-            or not (on or phase > _RISING or reading is None or (reading and lifted))
-            for reading, on, touches, certain, phase, lifted in feet
-        )
-
     def is_open(self, leg: int) -> bool:
         """Return whether a contact is missing that other feet tell of: that of a switch that stays open."""
         return self._evidence[leg] > _OPEN_AFTER
 
     def is_known(self, leg: int) -> bool:
         """Return whether a contact is measured, by a switch that works."""
-        return self.estimator.known[leg] and not self.is_open(leg)
+        return self.estimator.known[leg] and not (self.is_open(leg) or self.is_closed(leg))
+
+    def stands(self, leg: int) -> bool:
+        """Return whether a foot that should stand does, as far as is known."""
+        return self.standing[leg] and leg not in self.hovering
+
+    def has_opened(self, leg: int) -> bool:
+        """Return whether a switch has opened since the foot last lifted off, or in the swing before."""
+        return self._closed[leg] == 0
+
+    def is_closed(self, leg: int) -> bool:
+        """Return whether contact tells nothing, as it does not cease while the foot swings."""
+        return self._closed[leg] >= _STAYS_CLOSED
+
+    def draws_back(self, leg: int) -> None:
+        """Take note of a foot that draws back from an obstacle: contact ceases then, unless a switch stays closed."""
+        self._closed[leg] = min(self._closed[leg] + 1, _STAYS_CLOSED)
 
     def _bears(self, leg: int) -> bool:
         """Return whether a foot bears load, but for the shortest of interruptions."""
@@ -295,5 +268,7 @@ class FootContacts:
 
     def supports(self, leg: int) -> bool:
         """Return whether a foot that should stand counts as support."""
+        if leg in self.hovering:
+            return False
         grace = _GRACE if self._settled[leg] > _SETTLED else 0.0
         return self._without[leg] <= grace or self.is_open(leg)

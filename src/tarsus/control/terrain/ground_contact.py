@@ -18,7 +18,7 @@ from tarsus.control.walk.state import GaitState
 from tarsus.control.walk.step_timing import StepTiming
 from tarsus.control.walk.stepper import land
 
-__all__ = ["met_ground", "not_sunk", "put_down", "supporting"]
+__all__ = ["hovering", "met_ground", "not_sunk", "put_down", "supporting"]
 
 # Swing phases from which on contact is a collision, and from which on it is the ground.
 _CLEAR, _LANDING = 0.12, 0.55
@@ -66,15 +66,15 @@ def met_ground(
     contacts, reach, landed, elevation = body.contacts, body.reach, list[int](), state.elevation
     places = state.in_heading(state.foot).tolist()
     for leg, (down, phase) in enumerate(zip(state.down.tolist(), state.swing_phase.tolist(), strict=True)):
-        foot, meets = state.felt[leg], contacts.estimator.reads(leg) and (contacts.lifted[leg] or contacts.opened[leg])
+        foot, meets = state.felt[leg], contacts.estimator.reads(leg) and contacts.has_opened(leg)
         if down or phase <= _CLEAR:
-            under_way = foot.top > float(state.ground_height[leg]) or foot.slide
-            if (contacts.feels(leg) or leg in stopped) and missing.tries(leg, places[leg]) and not under_way:
-                state = _trying_again(state, leg, missing, reach, state, error(leg))
+            if (contacts.feels(leg) or leg in stopped) and missing.tries(leg, places[leg]):
+                state = _held_up(state, leg, missing, body, error(leg), stopped=leg in stopped)
             continue
         leaves = missing.obstacles.leaves(state.in_heading(complex(state.foothold[leg])) - places[leg])
         side = contacts.feels(leg) and contacts.lifted[leg]
         if not leaves and _collides_again(state, leg, side=side, stopped=leg in stopped, scale=reach.scale):
+            contacts.draws_back(leg)
             state = _trying_again(state, leg, missing, reach, _landed(state, leg, timing, pace), error(leg))
             landed.append(leg)
         elif phase > _LANDING or (pace < HALTING and _stands_below(state, leg, contacts, scale=reach.scale)):
@@ -200,6 +200,20 @@ def _trying_again(
     return after._replace(felt=_with(after.felt, leg, speed=0.0, acceleration=0.0, top=top, slide=slide))
 
 
+def _held_up(
+    state: GaitState, leg: int, missing: MissingGround, body: BodyMotion, error: complex, *, stopped: bool
+) -> GaitState:
+    """Return the state with a foot that meets an obstacle as it steps past it; its switch may stay closed."""
+    foot = state.felt[leg]
+    if foot.top > float(state.ground_height[leg]) or foot.slide:
+        return state
+    body.contacts.draws_back(leg)
+    if body.contacts.is_closed(leg) and not stopped:
+        missing.drop(leg)
+        return state
+    return _trying_again(state, leg, missing, body.reach, state, error)
+
+
 def _with(feet: Sequence[FeltFoot], leg: int, **values: Any) -> list[FeltFoot]:
     """Return the feet with other values for one of them."""
     return [foot._replace(**values) if index == leg else foot for index, foot in enumerate(feet)]
@@ -231,6 +245,21 @@ def not_sunk(state: GaitState, body: BodyMotion, footing: Footing, *, tips: bool
     if deep:
         return none, none
     return low if low == footing.down else none, low
+
+
+def hovering(state: GaitState, contacts: FootContacts, depths: Sequence[float]) -> list[int]:
+    """Return the legs whose feet have landed above the ground, and have not stood since: their switches stay closed.
+
+    Parameters
+    ----------
+    state, contacts : GaitState, FootContacts
+        The gait state; the contacts.
+    depths : sequence of float
+        How far below the expected ground each foot is [m].
+    """
+    closed = [leg for leg, known in enumerate(contacts.estimator.known) if known and contacts.is_closed(leg)]
+    landed = [leg for leg in closed if state.down[leg] and not math.isnan(state.felt[leg].top)]
+    return [leg for leg in landed if depths[leg] < -ROUNDING]
 
 
 def supporting(state: GaitState, body: BodyMotion, footing: Footing, *, walks: bool) -> list[bool]:

@@ -8,10 +8,9 @@ from functools import partial
 from tarsus.control.limitation import Cause, Limitation, LimitationKind
 from tarsus.control.limiter.protocol import TwistGrant, TwistRequest, leads_towards
 from tarsus.control.terrain.edge import FORGETS, Edge, direction
-from tarsus.control.terrain.foot_contacts import Search
 from tarsus.control.terrain.ground_map import GroundMap
 from tarsus.control.terrain.obstacles import Obstacles
-from tarsus.control.terrain.support import Footing, holds
+from tarsus.control.terrain.support import Footing, Search, holds
 from tarsus.control.transition.foothold_transfer import FootholdTransfer
 
 __all__ = ["SLOW", "MissingGround"]
@@ -161,7 +160,7 @@ class MissingGround:
         # Past an obstacle, a foot looks for the ground like any other.
         past = {leg for leg in self.obstacles.legs if not self.steps_back(leg, feet[leg])}
         for leg in [leg for leg in self.places if leg not in searching or leg in past]:
-            self._drop(leg)
+            self.drop(leg)
             self._tries[leg] = 0
         # A robot that has tipped goes back until it is held well; one none of whose feet stands is being lifted.
         standing = [foot for foot, on in zip(feet, stands, strict=True) if on]
@@ -249,9 +248,9 @@ class MissingGround:
         """Take note that the robot tips this way: no foot tries to get past an obstacle then."""
         self.tips = way
         for leg in self.obstacles.legs:
-            self._drop(leg)
+            self.drop(leg)
 
-    def _drop(self, leg: int) -> None:
+    def drop(self, leg: int) -> None:
         """Forget what has stopped a foot, and where it is to stand."""
         self.obstacles.forget(leg)
         self.places.pop(leg, None)
@@ -293,7 +292,7 @@ class MissingGround:
         if self.refuses:
             return grant.at_most(0.0, self._cause.limitation(LimitationKind.GROUND))
         for leg in self.obstacles.led_away(partial(leads_towards, velocity)):
-            self._drop(leg)
+            self.drop(leg)
         if any(request.twist) and not self.places and self._edge.way:
             self._edge.leave(self.obstacles.found)
         # Where there was an edge, the ground may be missing once more.

@@ -10,7 +10,7 @@ from typing import NamedTuple
 from tarsus.control.readings import RollPitch
 from tarsus.control.walk.state import GaitState
 
-__all__ = ["HALTING", "Footing", "Support", "Tipping", "along_gravity", "holds", "off_commanded", "sunk_at"]
+__all__ = ["HALTING", "Footing", "Search", "Support", "Tipping", "along_gravity", "holds", "off_commanded", "sunk_at"]
 
 # Rates at which the pace falls and rises [1/s].
 _FALL, _RISE = 10.0, 6.0
@@ -25,6 +25,29 @@ _LEAST_ANGLE = 0.02
 _SINKS, _FOLLOWED, _LOW, _LASTS = 0.015, 0.6, 0.008, 0.2
 HALTING = 0.5
 """Below this pace the robot waits for support."""
+
+
+class Search(NamedTuple):
+    """A foot that should stand and feels nothing.
+
+    Attributes
+    ----------
+    leg, depth : int, float
+        The leg; how far below the expected ground its foot is [m].
+    falls, lasts : bool
+        Whether the foot goes down; whether it has not searched for long.
+    sunk, raised, leans : float
+        By how much the body has sunk at the foot since that lost its contact; by how much the foot is higher than
+        commanded, where that is measured; by how much the body is lower there than in the attitude to keep [m].
+    """
+
+    leg: int
+    depth: float
+    falls: bool
+    lasts: bool
+    sunk: float = 0.0
+    raised: float = 0.0
+    leans: float = 0.0
 
 
 class Footing(NamedTuple):
