@@ -34,8 +34,8 @@ _NEVER = 0.3
 _SINKS = 0.01
 # How fast it may sink, at a foot whose switch is taken to be open, while readings are late [m/s].
 _FALLS = 0.4
-# In how many swings in a row the contact of a foot does not cease whose switch stays closed.
-_STAYS_CLOSED = 2
+# In how many swings in a row, or ways back from an obstacle, contact does not cease where a switch stays closed.
+_STAYS_CLOSED = 3
 # After how many landings a switch stays open for sure: a shin does not rest on an edge for that long.
 _SURELY_OPEN = 2
 # Fewer feet bear no robot, unless something else holds it.
@@ -256,7 +256,7 @@ class FootContacts:
 
     def touches(self, leg: int) -> bool:
         """Return whether a foot bears load now; True where nothing is known."""
-        return self._without[leg] <= 0.0 or self.is_open(leg)
+        return (self._without[leg] <= 0.0 or self.is_open(leg)) and leg not in self.hovering
 
     def feels(self, leg: int) -> bool:
         """Return whether a foot touches the side of an obstacle, or rests on it: estimates do not tell."""
