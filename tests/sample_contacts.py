@@ -1,5 +1,10 @@
 """Contacts of feet, taken in with what is usual besides them."""
 
+from tarsus.control.terrain.support import Footing
+
+FEET = [0.27 + 0.15j, 0.31j, -0.27 + 0.15j, -0.27 - 0.15j, -0.31j, 0.27 - 0.15j]
+STANDING = Footing(FEET, [True] * 6, 0j, 0.1)
+
 
 def take_in(contacts, readings, down, dt, *, count=1, leaving=None, rests=False, carried=False):
     """Take in contacts of feet none of which lifts off soon, of a robot that walks."""

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import tarsus
-from sample_contacts import find_open, take_in
+from sample_contacts import FEET, STANDING, find_open, take_in
 from tarsus.control.limiter.protocol import TwistGrant, TwistRequest
 from tarsus.control.pose.admittance import Admittance
 from tarsus.control.pose.posture_feedback import BodyMove, PostureFeedback
@@ -21,7 +21,7 @@ from tarsus.control.terrain.foot_contacts import FootContacts
 from tarsus.control.terrain.missing_ground import MissingGround
 from tarsus.control.terrain.reach import Reach
 from tarsus.control.terrain.roughness import Roughness
-from tarsus.control.terrain.support import Footing, Support, Tipping, along_gravity, holds
+from tarsus.control.terrain.support import Support, Tipping, along_gravity, holds
 from tarsus.control.walk.felt_feet import FeltFoot, FeltInputs, GroundUnder, travel_share
 from tarsus.control.walk.vertical_motion import _searching, _swinging
 from tarsus.control.walk_controller import WalkController
@@ -32,8 +32,6 @@ from tarsus.simulation import SensorSuite, SimulatedPlant
 from tarsus.simulation.sensors.suite import FootSwitch, Sensor
 
 STRIDER = tarsus.load_robot("strider")
-FEET = [0.27 + 0.15j, 0.31j, -0.27 + 0.15j, -0.27 - 0.15j, -0.31j, 0.27 - 0.15j]
-STANDING = Footing(FEET, [True] * 6, 0j, 0.1)
 
 
 def test_a_good_switch_is_believed_at_once_and_a_noisy_one_takes_longer():

@@ -285,8 +285,8 @@ class FeltGround:
         waits = any((self.body.slope.holds, condition.carried, missing.refuses, missing.tips))
         legs = [leg for leg, on in enumerate(footing.down) if on and not (leg in missing.places or (due and due[leg]))]
         stays = (self.support.holds(legs, footing, anew=not self.body.since) and not (lifts and waits)) or due is None
-        up = not condition.fallen
-        self.support.step(stays=stays and up, lifts=lifts and up, dt=dt, swing_time=swing_time, most=missing.pace)
+        stays, lifts = stays and not condition.fallen, lifts and not condition.fallen
+        self.support.step(stays=stays, lifts=lifts, dt=dt, swing_time=swing_time, most=missing.pace)
 
     @property
     def limitations(self) -> tuple[Limitation, ...]:

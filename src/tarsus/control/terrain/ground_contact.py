@@ -66,14 +66,15 @@ def met_ground(
     contacts, reach, landed, elevation = body.contacts, body.reach, list[int](), state.elevation
     places = state.in_heading(state.foot).tolist()
     for leg, (down, phase) in enumerate(zip(state.down.tolist(), state.swing_phase.tolist(), strict=True)):
-        foot, meets = state.felt[leg], contacts.estimator.reads(leg) and contacts.has_opened(leg)
+        foot, stops = state.felt[leg], leg in stopped
+        meets = contacts.estimator.reads(leg) and contacts.has_opened(leg)
         if down or phase <= _CLEAR:
-            if (contacts.feels(leg) or leg in stopped) and missing.tries(leg, places[leg]):
-                state = _held_up(state, leg, missing, body, error(leg), stopped=leg in stopped)
+            if (contacts.feels(leg) or stops) and missing.tries(leg, places[leg]):
+                state = _stopped_again(state, leg, missing, body, error(leg), stopped=stops)
             continue
         leaves = missing.obstacles.leaves(state.in_heading(complex(state.foothold[leg])) - places[leg])
         side = contacts.feels(leg) and contacts.lifted[leg]
-        if not leaves and _collides_again(state, leg, side=side, stopped=leg in stopped, scale=reach.scale):
+        if not leaves and _collides_again(state, leg, side=side, stopped=stops, scale=reach.scale):
             contacts.draws_back(leg)
             state = _trying_again(state, leg, missing, reach, _landed(state, leg, timing, pace), error(leg))
             landed.append(leg)
@@ -94,11 +95,7 @@ def met_ground(
                     body.roughness.landed(min(off, max(off - sunk, 0.0)))
                 state = _landed(state, leg, timing, pace)
                 landed.append(leg)
-        elif (
-            (meets or leg in stopped)
-            and not leaves
-            and _collides(state, leg, contacts, stopped=leg in stopped, scale=reach.scale)
-        ):
+        elif (meets or stops) and not leaves and _collides(state, leg, contacts, stopped=stops, scale=reach.scale):
             body.roughness.collided()
             state = _rising_again(state, leg, reach, timing, error(leg))
     return state, landed
@@ -200,7 +197,7 @@ def _trying_again(
     return after._replace(felt=_with(after.felt, leg, speed=0.0, acceleration=0.0, top=top, slide=slide))
 
 
-def _held_up(
+def _stopped_again(
     state: GaitState, leg: int, missing: MissingGround, body: BodyMotion, error: complex, *, stopped: bool
 ) -> GaitState:
     """Return the state with a foot that meets an obstacle as it steps past it; its switch may stay closed."""
