@@ -195,7 +195,7 @@ class BodyMotion:
         """Change the height of the body to one at which all legs reach the ground."""
         contacts, reach, plane = self.contacts, self.reach, self.ground.plane
         hanging = [leg for leg, on in enumerate(down) if on and contacts.seeks(leg) and reach.hangs(leg, over[leg])]
-        stands = all(on or not should for on, should in zip(contacts.standing, down, strict=True))
+        stands = all(contacts.stands(leg) for leg, on in enumerate(down) if on)
         now = reach.rises(plane, over, bears=bears, hanging=hanging)
         least, most = self.ground.rises(now, reach, looks=stands)
         lower = 0.0 if self.ground.given else _LOWER * self.roughness.value
