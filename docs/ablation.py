@@ -17,7 +17,7 @@ import numpy as np
 
 import tarsus
 from page_tables import Several, write_tables
-from rough_ground import CASES, GROUNDS, NOT_ADAPTED, PAGE, RANDOM, Case, Outcome, switches, walk
+from rough_ground import CASES, GROUNDS, PAGE, RANDOM, Case, Outcome, walk
 from tarsus.control.pose.posture_feedback import PostureFeedback
 from tarsus.control.terrain import ground_contact
 from tarsus.control.terrain.foot_contacts import FootContacts
@@ -33,21 +33,17 @@ def off(owner: Any, name: str, result: Any) -> Callable[[], AbstractContextManag
 # In place of the attribute: all feet that should stand do.
 ALL_STAND = property(lambda contacts: [True] * len(contacts.lifted), lambda *_: None)
 
-CASES["off"] = Case()
-CASES["off: adaptation"] = Case(options=NOT_ADAPTED)
-CASES["off: lost time"] = Case(options={"adaptation": tarsus.GroundAdaptation(catch_up=1.0)})
-CASES["off: levelling"] = Case(options={"levelling": None})
-CASES["off: odometry"] = Case(sensors=switches())
+CASES["without lost time"] = Case(options={"adaptation": tarsus.GroundAdaptation(catch_up=1.0)})
 # What is switched off: by an option or a sensor that is missing, or in place of a function.
 MECHANISMS: dict[str, tuple[str, Callable[[], AbstractContextManager[Any]]]] = {
-    "nothing": ("off", nullcontext),
-    "levelling": ("off: levelling", nullcontext),
-    "adaptation": ("off: adaptation", nullcontext),
-    "lost time": ("off: lost time", nullcontext),
-    "lost way": ("off: odometry", nullcontext),
-    "obstacles": ("off", off(ground_contact, "_collides", result=False)),
-    "search in stance": ("off", partial(patch.object, FootContacts, "standing", ALL_STAND, create=True)),
-    "reach": ("off", off(PostureFeedback, "fit_to_reach", result=None)),
+    "nothing": ("felt", nullcontext),
+    "levelling": ("without levelling", nullcontext),
+    "adaptation": ("without adaptation", nullcontext),
+    "lost time": ("without lost time", nullcontext),
+    "lost way": ("without odometry", nullcontext),
+    "obstacles": ("felt", off(ground_contact, "_collides", result=False)),
+    "search in stance": ("felt", partial(patch.object, FootContacts, "standing", ALL_STAND, create=True)),
+    "reach": ("felt", off(PostureFeedback, "fit_to_reach", result=None)),
     "contacts": ("blind", nullcontext),
 }
 

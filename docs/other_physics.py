@@ -26,7 +26,7 @@ PAYLOAD = 0.2
 
 
 def contact_time(model: Any, time: float) -> None:
-    """Let contacts give way with a time constant [s]; MuJoCo's default is 20 ms."""
+    """Let contacts give way with another time constant than 10 ms [s]."""
     model.geom_solref[:] = time, 1.0
 
 
