@@ -12,9 +12,11 @@ from gait_robots import HEXAPOD_GAITS, PRESETS
 from sample_gait_states import EARTH, FACING, begun, moment_of, rest_of, step_inputs_of
 from sample_stances import setup_of
 from tarsus.control.filters import CriticallyDamped
+from tarsus.control.walk.felt_feet import FeltFoot, FeltInputs, GroundUnder
 from tarsus.control.walk.foothold import final_footholds
 from tarsus.control.walk.state import POSITION_TOLERANCE, integrate_twist
 from tarsus.control.walk.stepper import TARGET_FREEZE, advance
+from tarsus.control.walk.vertical_motion import moved_vertically
 from tarsus.gait.cycle import cycle_feet
 from tarsus.gait.stance.stance_geometry import with_sway
 from tarsus.kinematics.pose import Pose
@@ -245,3 +247,18 @@ def test_what_a_foot_has_given_way_is_part_of_its_swing():
     before, later = (np.array(m.heights(setup.swing_height)) + m.admittance_offset.value for m in (now, after))
     np.testing.assert_allclose(later, before, atol=1e-9)
     assert not after.admittance_offset.value[~after.down].any()
+
+
+def test_a_foot_that_was_put_down_in_the_air_and_has_not_stood_rises_as_it_lifts_off_again():
+    setup, rest = setup_of("strider"), rest_of("strider")
+    now = begun(setup, rest)
+    now = now._replace(felt=[FeltFoot(speed=-0.1, top=0.05)] * len(rest), ground_height=np.full(len(rest), 0.02))
+    under = [GroundUnder(0.0, lowest=-0.05, highest=0.1)] * len(rest)
+    stands, steps = [False] * len(rest), [True] * len(rest)
+    felt = FeltInputs(under, stands, steps, 0.0, 0.0, (0.0, 0.0), 0j, 0.0, 0j, 0.8, 1.0, 0.03, 0.4, 0.0, {})
+    inputs = step_inputs_of(setup, rest, (0.05, 0.0, 0.0), felt=felt)
+    for _ in range(18):
+        now = moved_vertically(advance(now, inputs, 0.01), inputs, 0.01)
+    assert 0 < now.down.sum() < len(rest)
+    assert (now.ground_height[~now.down] > 0.035).all()
+    assert (now.ground_height[now.down] < 0.01).all()

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -109,8 +110,11 @@ def _lift(
         # The admittance offset becomes the start of the swing.
         start = start + offset.value
         offset = offset._replace(value=np.where(lifts, 0.0, offset.value))
+    # One that has not stood since its last swing rises anew.
+    felt = [foot._replace(top=math.nan) if on else foot for foot, on in zip(state.felt, lifts.tolist(), strict=False)]
     return state._replace(
         step_number=state.step_number + missed,
+        felt=felt,
         down=state.down & ~lifts,
         swing_phase=np.where(lifts, 0.0, state.swing_phase),
         start_height=np.where(lifts, start, state.start_height),
