@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from abc import ABC, abstractmethod
 from collections.abc import Sequence
 from typing import Any, TypeVar
 
@@ -59,25 +58,7 @@ class Channel:
         return None
 
 
-class _BodyChannel(Channel, ABC):
-    """A channel with one reading for the body."""
-
-    def read(self, value: Any, rejected: list[str]) -> Any:
-        """Return the reading if it is accepted.
-
-        Parameters
-        ----------
-        value, rejected : anything, list of str
-            The reading; the reason of a rejection is appended to it.
-        """
-        return self._accepted(0, self._checked(value), rejected)
-
-    @abstractmethod
-    def _checked(self, value: Any) -> Any:
-        """Return a reading, or what is wrong with it."""
-
-
-class AttitudeChannel(_BodyChannel):
+class AttitudeChannel(Channel):
     """Roll and pitch, plausible while they change no faster than a robot can turn."""
 
     def __init__(self) -> None:
@@ -85,6 +66,10 @@ class AttitudeChannel(_BodyChannel):
         # The last reading within the greatest tilt, accepted or not, and when it was read.
         self._last: RollPitch | None = None
         self._read = 0.0
+
+    def read(self, value: Any, rejected: list[str]) -> RollPitch | None:
+        """Return the reading if it is accepted; the reason of a rejection is appended to `rejected`."""
+        return self._accepted(0, self._checked(value), rejected)
 
     def _checked(self, value: Any) -> RollPitch | str:
         """Return a reading, or what is wrong with it; remember it if it is within the greatest tilt."""
@@ -101,15 +86,12 @@ class AttitudeChannel(_BodyChannel):
         return self._last
 
 
-class AngularRateChannel(_BodyChannel):
+class AngularRateChannel(Channel):
     """Angular velocity of the body, plausible where it is finite."""
 
-    def __init__(self) -> None:
-        super().__init__(["angular_rates"])
-
-    def _checked(self, value: Any) -> Vector | str:
-        """Return a reading, or what is wrong with it."""
-        reading = as_vector(value)
-        if reading is None:
-            return "expected three numbers"
-        return reading if all(map(math.isfinite, reading)) else "not finite numbers"
+    def read(self, value: Any, rejected: list[str]) -> Vector | None:
+        """Return the reading if it is accepted; the reason of a rejection is appended to `rejected`."""
+        reading: Vector | str = as_vector(value) or "expected three numbers"
+        if not (isinstance(reading, str) or all(map(math.isfinite, reading))):
+            reading = "not finite numbers"
+        return self._accepted(0, reading, rejected)

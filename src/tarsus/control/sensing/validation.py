@@ -60,7 +60,7 @@ class ReadingsValidator:
             "forces": _forces_channel(robot),
             "torques": _torques_channel(robot),
             **{name: VectorChannel(name, legs) for name in _FINITE_CHANNELS},
-            "angular_rates": AngularRateChannel(),
+            "angular_rates": AngularRateChannel(["angular_rates"]),
             "ground": _GroundChannel(["ground"]),
         }
         self._channels: list[Any] = [channels[name] for name in CHANNELS]
