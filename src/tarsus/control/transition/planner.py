@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
@@ -48,16 +49,6 @@ class _Path(NamedTuple):
 
     def at(self, fraction: float) -> StanceTarget:
         return self.start.towards(self.end, fraction)
-
-
-class _Increment(NamedTuple):
-    """A part of a path that is feasible, and its limits."""
-
-    goal: StanceTarget
-    timing: CycleTiming
-    stepping: VelocityLimits
-    on_path: VelocityLimits
-    final: VelocityLimits
 
 
 class TransitionPlanner:
@@ -162,22 +153,16 @@ class TransitionPlanner:
             limits = yield from self._limits(parameters, path.at(fraction))
             found = yield from self._increment(parameters, path, fraction, limits)
         shortfalls = () if end is present else self._shortfalls(parameters, path)
-        return StanceTransition(
-            parameters=parameters,
-            complete=fraction == path.fraction and bool((found.goal.rest == path.at(fraction).rest).all()),
+        return replace(
+            found,
+            complete=fraction == path.fraction and bool((found.rest == path.at(fraction).rest).all()),
             keeps_posture=end is present,
-            posture=found.goal.posture,
-            rest=found.goal.rest,
-            cycle_timing=found.timing,
-            stepping_limits=found.stepping,
-            path_limits=found.on_path,
-            final_limits=found.final,
-            limitations=(*shortfalls, *_timing_limitations(parameters, found.timing)),
+            limitations=(*shortfalls, *_timing_limitations(parameters, found.cycle_timing)),
         )
 
     def _increment(
         self, parameters: WalkParameters, path: _Path, fraction: float, limits: VelocityLimits
-    ) -> Incremental[_Increment | Cause]:
+    ) -> Incremental[StanceTransition | Cause]:
         """Find a way to a fraction of a path, with its limits there; or else one on which only the body moves."""
         goal = path.at(fraction)
         if not limits.feasible:
@@ -195,7 +180,7 @@ class TransitionPlanner:
 
     def _way(
         self, parameters: WalkParameters, start: StanceTarget, goal: StanceTarget, limits: VelocityLimits
-    ) -> Incremental[_Increment | Cause]:
+    ) -> Incremental[StanceTransition | Cause]:
         """Find cycle time and limits on the way to a stance; `limits` are those in it."""
         gait = parameters.gait
         timing = yield from cycle_timing(
@@ -205,7 +190,15 @@ class TransitionPlanner:
         yield
         stepping, on_path = yield from self._path_limits(parameters, start, goal, final)
         if on_path.feasible:
-            return _Increment(goal, timing, stepping, on_path, final)
+            return StanceTransition(
+                parameters=parameters,
+                posture=goal.posture,
+                rest=goal.rest,
+                cycle_timing=timing,
+                stepping_limits=stepping,
+                path_limits=on_path,
+                final_limits=final,
+            )
         if not on_path.balanced:
             return TIPPING._replace(reason=f"{TIPPING.reason} on the way")
         return Cause("could not stand and step on the way", self._robot.leg_names[on_path.limiting_leg])

@@ -159,10 +159,6 @@ class StanceTransition:
     ----------
     parameters : WalkParameters
         What is commanded.
-    complete : bool
-        Whether it meets as much of that as is feasible; if not, a further transition follows.
-    keeps_posture : bool
-        Whether only the steps change.
     posture : array, shape (7,)
         The posture to reach.
     rest : complex array, shape (legs,)
@@ -171,20 +167,24 @@ class StanceTransition:
         Cycle time and strokes in the new stance.
     stepping_limits, path_limits, final_limits : VelocityLimits
         The limits while the feet step to their new rest footholds, while the body moves, and in the new stance.
+    complete : bool
+        Whether it meets as much of that as is feasible; if not, a further transition follows.
+    keeps_posture : bool
+        Whether only the steps change.
     limitations : tuple of Limitation
         What of the commanded parameters is not feasible.
     """
 
     parameters: WalkParameters
-    complete: bool
-    keeps_posture: bool
     posture: Float[np.ndarray, "7"]
     rest: Complex[np.ndarray, "legs"]
     cycle_timing: CycleTiming
     stepping_limits: VelocityLimits
     path_limits: VelocityLimits
     final_limits: VelocityLimits
-    limitations: tuple[Limitation, ...]
+    complete: bool = True
+    keeps_posture: bool = False
+    limitations: tuple[Limitation, ...] = ()
 
 
 class NextGait(NamedTuple):
