@@ -13,13 +13,7 @@ from tarsus.control.command import Command
 from tarsus.control.limitation import Cause, Limitation, LimitationKind
 from tarsus.control.walk.foot_target_motion import GREATEST_SPEED, FootTargetMotion, begin_foot_target
 from tarsus.control.walk.state import GaitState
-from tarsus.gait.stance.stance_geometry import (
-    SWING_HEIGHT,
-    StanceGeometry,
-    joint_margin,
-    rotation_rows,
-    sway_extremes,
-)
+from tarsus.gait.stance.stance_geometry import SWING_HEIGHT, StanceGeometry, joint_margin, rotation_rows, sway_extremes
 from tarsus.robot.robot import Robot, require_leg_number
 
 if TYPE_CHECKING:
