@@ -39,13 +39,7 @@ class CriticallyDamped(NamedTuple):
 
     @classmethod
     def still(cls, value: Float[np.ndarray, "n"]) -> CriticallyDamped:
-        """Return a filter at rest at a value.
-
-        Parameters
-        ----------
-        value : array
-            The value.
-        """
+        """Return a filter at rest at a value."""
         return cls(value, np.zeros_like(value))
 
     def step(self, target: Float[np.ndarray, "n"], dt: float, *, bandwidth: float) -> CriticallyDamped:
@@ -62,13 +56,7 @@ class CriticallyDamped(NamedTuple):
         return CriticallyDamped(value, (decay - bandwidth * kept) * self.rate - bandwidth * bandwidth * kept * gap)
 
     def settling_step(self, target: Float[np.ndarray, "n"], dt: float, *, bandwidth: float) -> CriticallyDamped:
-        """Return the filter after a time with a constant target; once at it, the same object from then on.
-
-        Parameters
-        ----------
-        target, dt, bandwidth : array, float, float
-            The target; the time [s]; the bandwidth [rad/s].
-        """
+        """Return what `step` does; once the filter is at its target, the same object from then on."""
         if self.value is target:
             return self
         after = self.step(target, dt, bandwidth=bandwidth)
@@ -80,15 +68,7 @@ class CriticallyDamped(NamedTuple):
     def step_with_integral(
         self, target: Float[np.ndarray, "n"], dt: float, *, bandwidth: float
     ) -> tuple[CriticallyDamped, list[float]]:
-        """Return the filter after a time with a constant target, and the value's integral; in floats, for few values.
-
-        Parameters
-        ----------
-        target : array, shape (n,)
-            The target.
-        dt, bandwidth : float
-            The time [s]; the bandwidth [rad/s].
-        """
+        """Return what `step` does, and the value's integral over the time; in floats, for few values."""
         w, decay = bandwidth, math.exp(-bandwidth * dt)
         values, rates, integrals = [], [], []
         for goal, value, rate in zip(target.tolist(), self.value.tolist(), self.rate.tolist(), strict=True):

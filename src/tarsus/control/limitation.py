@@ -75,15 +75,7 @@ class Cause(NamedTuple):
         return cause + _margin_text(self.margin, self.least_margin)
 
     def limitation(self, kind: LimitationKind, *, asked: float = _NONE, granted: float = _NONE) -> Limitation:
-        """Return the limitation that this causes.
-
-        Parameters
-        ----------
-        kind : LimitationKind
-            The part of the command.
-        asked, granted : float
-            What was commanded and what is done, as in `Limitation`.
-        """
+        """Return the limitation of a part of a command that this causes; `asked`, `granted` as in `Limitation`."""
         reason, leg, margin, least = self
         return Limitation(
             kind=kind, cause=reason, leg=leg, asked=asked, granted=granted, margin=margin, least_margin=least

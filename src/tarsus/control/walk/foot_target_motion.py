@@ -36,13 +36,7 @@ class FootTargetMotion(NamedTuple):
     target: Float[np.ndarray, "3"]
 
     def step(self, dt: float) -> FootTargetMotion:
-        """Return the motion after a time.
-
-        Parameters
-        ----------
-        dt : float
-            The time [s].
-        """
+        """Return the motion after a time [s]."""
         distance = float(np.abs(self.target - self.position.value).max())
         # A critically damped filter with bandwidth 2 v / distance, renewed every tick, reaches speed v and keeps it.
         bandwidth = min(_BANDWIDTH, 2 * GREATEST_SPEED / max(distance, 1e-9))

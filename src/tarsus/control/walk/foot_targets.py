@@ -84,13 +84,7 @@ class FootTargets:
         return len(self._motions) > len(self._excluded)
 
     def set_legs(self, excluded: tuple[int, ...], state: GaitState) -> None:
-        """Set the legs that are taken out of the gait; a leg that returns stays in the air until its next step.
-
-        Parameters
-        ----------
-        excluded, state : tuple of int, GaitState
-            The legs; the state of the walk.
-        """
+        """Set the legs that are taken out of the gait; a leg that returns stays in the air until its next step."""
         stopped = {leg: motion.stopped() for leg, motion in self._motions.items() if leg not in excluded}
         self._motions = stopped | {leg: self._motions.get(leg) or begin_foot_target(state, leg) for leg in excluded}
         self._excluded, self.limitations = excluded, []
@@ -194,18 +188,7 @@ class FootTargets:
             self._motions = {leg: motion.step(time) for leg, motion in self._motions.items() if down[leg]}
 
     def without_bounds(self, bounds: Float[np.ndarray, "legs 16"]) -> Float[np.ndarray, "legs 16"]:
-        """Return the polygons of the feet, unbounded for the feet that do not step.
-
-        Parameters
-        ----------
-        bounds : array, shape (legs, 16)
-            Sides of the polygons [m].
-
-        Returns
-        -------
-        array, shape (legs, 16)
-            The sides, infinite for those feet [m].
-        """
+        """Return the sides of the feet's polygons, infinite for the feet that do not step [m]."""
         if not self._motions:
             return bounds
         free = bounds.copy()

@@ -48,17 +48,9 @@ class JointSolver:
         self._body: tuple[Rows, list[float], float] = (((),), [], 0.0)
 
     def angles(self, state: GaitState) -> Float[np.ndarray, "legs 3"]:
-        """Return the joint angles of a state; for feet out of reach, those of the nearest reachable points.
+        """Return the joint angles of a state, read-only [rad].
 
-        Parameters
-        ----------
-        state : GaitState
-            The state of the walk.
-
-        Returns
-        -------
-        array, shape (legs, 3)
-            Joint angles, read-only [rad].
+        For feet out of reach, they are those of the nearest reachable points.
         """
         rotation, position, swing_height = self._body_at(state)
         turn, origin = cmath.exp(-1j * state.yaw), state.origin
@@ -82,19 +74,9 @@ class JointSolver:
         return angles
 
     def feet(self, state: GaitState, angles: Float[np.ndarray, "legs 3"]) -> Float[np.ndarray, "legs 3"]:
-        """Return the feet, the centres of their balls, by forward kinematics: where they are under load.
+        """Return the feet in G, the centres of their balls, of a state and its joint angles [m].
 
-        Parameters
-        ----------
-        state : GaitState
-            The state of the walk.
-        angles : array, shape (legs, 3)
-            Its joint angles [rad].
-
-        Returns
-        -------
-        array, shape (legs, 3)
-            Positions in G [m].
+        They are found by forward kinematics: where they are under load.
         """
         rotation, position, _ = self._body_at(state)
         turn, origin = cmath.exp(1j * state.yaw), state.origin

@@ -182,13 +182,7 @@ def stance_intervals(
 
 
 def time_to_touchdown(state: GaitState, timing: StepTiming) -> Float[np.ndarray, "legs"]:
-    """Return the time until each foot touches down: array, shape (legs,) [s].
-
-    Parameters
-    ----------
-    state, timing
-        As for `stance_intervals`.
-    """
+    """Return the time until each foot touches down: array, shape (legs,) [s]."""
     return np.where(state.down, 0.0, (1 - state.swing_phase) * (1 - timing.gait.duty_factor) / timing.frequency)
 
 

@@ -150,23 +150,11 @@ class GaitState(NamedTuple):
         return Pose.unchecked(rotation, np.array([origin.real, origin.imag, self.elevation + z]))
 
     def in_heading(self, places: _Places) -> _Places:
-        """Return places of G in the heading frame [m].
-
-        Parameters
-        ----------
-        places : complex or complex array, shape (legs,)
-            Where in G they are [m].
-        """
+        """Return places of G in the heading frame, x + iy [m]."""
         return (places - self.origin) * cmath.exp(-1j * self.yaw)
 
     def heights(self, swing_height: float) -> list[float]:
-        """Return the heights of the feet in G as a list of floats [m].
-
-        Parameters
-        ----------
-        swing_height : float
-            Height of a swinging foot over its foothold [m].
-        """
+        """Return the heights of the feet in G, for a swing height over the footholds [m]."""
         heights: list[float] = self.ground_height.tolist()
         if self.felt:
             return heights

@@ -39,13 +39,7 @@ class StepTiming(NamedTuple):
 
     @classmethod
     def of(cls, gait: Gait, cycle_time: float) -> StepTiming:
-        """Return the timing of a gait.
-
-        Parameters
-        ----------
-        gait, cycle_time : Gait, float
-            Order of the steps; duration of a cycle [s].
-        """
+        """Return the timing of a gait with cycles of a duration [s]."""
         return cls(gait, 1 / cycle_time, len(set(gait.offsets)))
 
     @property
@@ -69,45 +63,21 @@ class StepTiming(NamedTuple):
         return self.gait.fewest_feet_down > _HELD
 
     def steps_like(self, gait: Gait) -> bool:
-        """Return whether another gait has the same steps and the same kind of body motion.
-
-        Parameters
-        ----------
-        gait : Gait
-            The other gait.
-        """
+        """Return whether another gait has the same steps and the same kind of body motion."""
         mine = self.gait
         return (gait.duty_factor, gait.offsets, gait.body_shift) == (mine.duty_factor, mine.offsets, mine.body_shift)
 
     def stands_before(self, gait: Gait) -> bool:
-        """Return whether the robot has to stand before it takes another gait: one of them shifts the body.
-
-        Parameters
-        ----------
-        gait : Gait
-            The other gait.
-        """
+        """Return whether the robot has to stand before it takes another gait: one of them shifts the body."""
         return (gait.body_shift or self.gait.body_shift) and not self.steps_like(gait)
 
     def due(self, state: GaitState, dt: float) -> list[bool]:
-        """Return which feet on the ground are due to lift off within a time.
-
-        Parameters
-        ----------
-        state, dt : GaitState, float
-            The gait state; the time [s].
-        """
+        """Return which feet on the ground are due to lift off within a time [s]."""
         clock = state.clock + self.frequency * dt
         return [clock > lift for lift in self.lift_clocks(state)]
 
     def lift_clocks(self, state: GaitState) -> list[float]:
-        """Return the clocks after which feet on the ground are due to lift off; infinity for those in the air.
-
-        Parameters
-        ----------
-        state : GaitState
-            The gait state.
-        """
+        """Return the clocks after which feet on the ground are due to lift off; infinity for those in the air."""
         lifts = self.gait.duty_factor - PHASE_TOLERANCE
         steps = zip(state.down.tolist(), self.gait.offsets, state.step_number.tolist(), strict=True)
         return [offset + number + lifts if down else math.inf for down, offset, number in steps]
@@ -126,13 +96,7 @@ class StepTiming(NamedTuple):
         return state._replace(clock=clock, step_number=np.ceil(clock - offsets - duty_factor - PHASE_TOLERANCE))
 
     def approach(self, frequency: float, dt: float) -> StepTiming:
-        """Return the timing after a tick in which the step frequency changes towards another.
-
-        Parameters
-        ----------
-        frequency, dt : float
-            The frequency to reach [1/s]; length of the tick [s].
-        """
+        """Return the timing after a tick [s] in which the step frequency changes towards another [1/s]."""
         now = self.frequency
         step = dt * now * now / 2
         reached = abs(frequency - now) <= step
@@ -147,13 +111,7 @@ class NextLift:
         self._clock = math.inf
 
     def is_due(self, timing: StepTiming, state: GaitState, dt: float) -> bool:
-        """Return whether any foot on the ground is due to lift off within a time.
-
-        Parameters
-        ----------
-        timing, state, dt : StepTiming, GaitState, float
-            The gait and its frequency; the gait state; the time [s].
-        """
+        """Return whether any foot on the ground is due to lift off within a time [s]."""
         steps = timing.gait, state.down, state.step_number
         if not self._steps or any(map(is_not, steps, self._steps)):
             self._steps, self._clock = steps, min(timing.lift_clocks(state))

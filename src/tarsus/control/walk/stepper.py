@@ -184,13 +184,7 @@ def _swing(
 
 
 def land(state: GaitState, landed: list[int]) -> GaitState:
-    """Return the state with feet put down where they are.
-
-    Parameters
-    ----------
-    state, landed : GaitState, list of int
-        The gait state; the legs.
-    """
+    """Return the state with the feet of some legs put down where they are."""
     number, down, phase = state.step_number.copy(), state.down.copy(), state.swing_phase.copy()
     number[landed] += 1
     down[landed], phase[landed] = True, 0.0
