@@ -62,15 +62,7 @@ class TwistGrant(NamedTuple):
     limitations: tuple[Limitation, ...] = ()
 
     def at_most(self, fraction: float, limitation: Limitation | None = None) -> TwistGrant:
-        """Return the grant with a fraction that is no greater than another.
-
-        Parameters
-        ----------
-        fraction : float
-            The other fraction.
-        limitation : Limitation, optional
-            What to report.
-        """
+        """Return the grant with a fraction no greater than another, and with a limitation to report, if any."""
         if limitation is None and fraction >= self.fraction:
             return self
         limitations = self.limitations if limitation is None else (*self.limitations, limitation)
@@ -96,11 +88,5 @@ class TwistLimiter(Protocol):
 
 
 def leads_towards(velocity: complex, way: complex) -> bool:
-    """Return whether a motion leads to what is at the end of a way.
-
-    Parameters
-    ----------
-    velocity, way : complex
-        The velocity, and the direction of the way, x + iy in the same frame; without either, nothing is led to.
-    """
+    """Return whether a velocity leads to what is at the end of a way, in one frame; without either, to nothing."""
     return (velocity * way.conjugate()).real > _TOWARDS * abs(velocity * way)

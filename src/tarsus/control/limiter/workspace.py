@@ -79,18 +79,7 @@ class WorkspaceLimiter:
 
 
 def top_speed(transitions: TransitionExecutor, direction: Sequence[float]) -> float:
-    """Return the largest multiple of a twist that the robot can sustain as it stands.
-
-    Parameters
-    ----------
-    transitions, direction : TransitionExecutor, (vx, vy, wz)
-        The stance; the twist [m/s, m/s, rad/s].
-
-    Raises
-    ------
-    InputError
-        If `direction` is not three finite numbers, or all are 0.
-    """
+    """Return what `WalkController.top_speed` does: the largest multiple of a twist that this stance sustains."""
     try:
         twist = tuple(float(speed) for speed in direction)
     except (TypeError, ValueError):

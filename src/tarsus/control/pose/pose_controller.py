@@ -70,13 +70,7 @@ class PoseController:
         return self.shift is None or float(np.abs(value - self.shift).sum()) <= _SHIFT_TOLERANCE
 
     def set_posture(self, posture: Float[np.ndarray, "7"]) -> None:
-        """Set the target posture.
-
-        Parameters
-        ----------
-        posture : array, shape (7,)
-            The target posture.
-        """
+        """Set the target posture."""
         self.posture = posture
         self.target = np.append(posture, self.target[SWING_HEIGHT + 1 :])
 
@@ -99,36 +93,18 @@ class PoseController:
             self.target, self._sways = np.append(self.posture, amplitude), bool(amplitude.any())
 
     def is_swaying(self, value: Float[np.ndarray, "13"]) -> bool:
-        """Return whether a posture sways, or its target does.
-
-        Parameters
-        ----------
-        value : array, shape (13,)
-            The current posture.
-        """
+        """Return whether the present posture sways, or its target does."""
         return self._sways or (value is not self.target and any(value[SWING_HEIGHT + 1 :].tolist()))
 
     def reached(self, value: Float[np.ndarray, "13"]) -> bool:
-        """Return whether a posture and its sway have reached their target.
-
-        Parameters
-        ----------
-        value : array, shape (13,)
-            The current posture.
-        """
+        """Return whether the present posture and its sway have reached their target."""
         if value is self.target:
             return True
         off: list[float] = np.abs(value - self.target).tolist()
         return max(off[: SWING_HEIGHT + 1]) < _POSTURE_TOLERANCE and max(off[SWING_HEIGHT + 1 :]) < _SWAY_TOLERANCE
 
     def bandwidth(self, value: Float[np.ndarray, "13"]) -> float:
-        """Return the bandwidth at which the body keeps to its greatest speeds [rad/s].
-
-        Parameters
-        ----------
-        value : array, shape (13,)
-            The current posture.
-        """
+        """Return the bandwidth at which the body keeps to its greatest speeds from its present posture [rad/s]."""
         if value is self.target:
             return _BANDWIDTH
         distance: list[float] = np.abs(value - self.target).tolist()

@@ -101,13 +101,7 @@ class SlopeStance:
             self.shift = wanted
 
     def not_downhill(self, velocity: complex) -> complex:
-        """Return a correction of the velocity without what of it goes downhill: feet slip that way, unnoticed.
-
-        Parameters
-        ----------
-        velocity : complex
-            In the heading frame [m/s].
-        """
+        """Return a correction of the velocity without what of it goes downhill: feet slip, unnoticed [m/s]."""
         along = (velocity * self.uphill.conjugate()).real
         return velocity - along * self.uphill / abs(self.uphill) ** 2 if along < 0 else velocity
 

@@ -17,13 +17,7 @@ __all__ = ["limited", "twist_limiters"]
 
 
 def twist_limiters(walk: WalkComponents) -> list[TwistLimiter]:
-    """Return the twist limiters in their order; the governor sets the twist from what those before it leave.
-
-    Parameters
-    ----------
-    walk : WalkComponents
-        The components.
-    """
+    """Return the twist limiters in their order; the governor sets the twist from what those before it leave."""
     ground, roughness, stance = walk.ground, walk.ground.body.roughness, walk.ground.body.stance
 
     def rate(twist: Sequence[float]) -> float | None:

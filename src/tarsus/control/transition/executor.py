@@ -120,18 +120,7 @@ class TransitionExecutor:
         return self._foot_targets.without_bounds(self.footholds.shifted(self.footholds.bounds))
 
     def stance_intervals(self, state: GaitState) -> tuple[Float[np.ndarray, "legs"], Float[np.ndarray, "legs"]]:
-        """Return from when until when each foot stands where it is, or where it will touch down.
-
-        Parameters
-        ----------
-        state : GaitState
-            The gait state.
-
-        Returns
-        -------
-        begins, ends : array, shape (legs,)
-            From now [s].
-        """
+        """Return from when until when each foot stands where it is, or where it will touch down: shape (legs,) [s]."""
         if self._next is None:
             return stance_intervals(state, self.timing)
         begins = time_to_touchdown(state, self.timing)

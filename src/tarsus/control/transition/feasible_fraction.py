@@ -140,13 +140,7 @@ def _reach_margin(robot: Robot, stances: list[StanceTarget]) -> Float[np.ndarray
 
 
 def reach_cause(robot: Robot, stand: StanceGeometry) -> Cause:
-    """Return which leg has no room about its rest foothold, and why.
-
-    Parameters
-    ----------
-    robot, stand : Robot, StanceGeometry
-        A single robot; the body and the rest footholds.
-    """
+    """Return which leg has no room about its rest foothold, and why."""
     margin = rest_margin(robot, stand)
     leg = int(margin.argmin())
     knee = bool(rest_margin(robot, stand, knees=False)[leg] >= 0)

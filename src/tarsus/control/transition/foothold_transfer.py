@@ -61,40 +61,17 @@ class FootholdTransfer:
         self.rest: Complex[np.ndarray, "legs"] = self._level_rest + self._shift
 
     def shift(self, shift: Complex[np.ndarray, "legs"]) -> None:
-        """Shift rest footholds and polygons, as a slope asks for; stances are planned without it.
-
-        Parameters
-        ----------
-        shift : complex array, shape (legs,)
-            In the heading frame [m].
-        """
+        """Shift rest footholds and polygons, as a slope asks for; stances are planned without it [m]."""
         if shift is not self._shift:
             self._shift, self.rest = shift, self._level_rest + shift
             self._sides_shift = (NORMALS_CONJUGATE * shift[:, None]).real
 
     def shifted(self, bounds: Float[np.ndarray, "legs 16"]) -> Float[np.ndarray, "legs 16"]:
-        """Return the sides of polygons that are shifted with the rest footholds [m].
-
-        Parameters
-        ----------
-        bounds : array, shape (legs, 16)
-            The sides [m].
-        """
+        """Return sides of polygons, shifted with the rest footholds [m]."""
         return np.asarray(bounds + self._sides_shift)
 
     def bounds_with(self, transition: StanceTransition) -> Float[np.ndarray, "legs 16"]:
-        """Return the sides with which the feet would start to transfer.
-
-        Parameters
-        ----------
-        transition : StanceTransition
-            The transition that would begin.
-
-        Returns
-        -------
-        array, shape (legs, 16)
-            The sides [m].
-        """
+        """Return the sides with which the feet would start to transfer, if the transition began [m]."""
         moved = self._moved(transition)
         return np.where(moved[:, None], self.bounds, np.minimum(self.bounds, transition.stepping_limits.bounds))
 
@@ -102,15 +79,7 @@ class FootholdTransfer:
         return np.asarray(np.abs(transition.rest - self.new_rest) > POSITION_TOLERANCE)
 
     def begin(self, transition: StanceTransition, down: Bool[np.ndarray, "legs"]) -> None:
-        """Begin to transfer the feet to new rest footholds.
-
-        Parameters
-        ----------
-        transition : StanceTransition
-            The transition that begins.
-        down : array of bool, shape (legs,)
-            Which feet are on the ground.
-        """
+        """Begin to transfer the feet to new rest footholds; `down` are those on the ground."""
         self.limits = self.limits.intersection(transition.stepping_limits)
         moved = self._moved(transition)
         self.bounds = self.bounds_with(transition)
@@ -122,13 +91,7 @@ class FootholdTransfer:
         self._update_placement()
 
     def feet_landed(self, landed: Bool[np.ndarray, "legs"]) -> None:
-        """Take note of the feet that landed in this tick.
-
-        Parameters
-        ----------
-        landed : array of bool, shape (legs,)
-            The feet.
-        """
+        """Take note of the feet that landed in this tick."""
         if self.bounds is self._next_bounds and self.transferred.all():
             return
         self._level_rest = np.where(landed, self.new_rest, self._level_rest)
@@ -138,24 +101,12 @@ class FootholdTransfer:
         self._update_placement()
 
     def restrict(self, limits: VelocityLimits) -> None:
-        """Keep within further limits too.
-
-        Parameters
-        ----------
-        limits : VelocityLimits
-            The limits.
-        """
+        """Keep within further limits too."""
         self.limits = self.limits.intersection(limits)
         self.bounds = self._next_bounds = np.minimum(self.bounds, limits.bounds)
         self._update_placement()
 
     def complete(self, limits: VelocityLimits) -> None:
-        """Change over to the limits of the stance that is reached.
-
-        Parameters
-        ----------
-        limits : VelocityLimits
-            The limits.
-        """
+        """Change over to the limits of the stance that is reached."""
         self.limits, self.bounds, self._next_bounds = limits, limits.bounds, limits.bounds
         self._update_placement()

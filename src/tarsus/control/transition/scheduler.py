@@ -121,13 +121,7 @@ class TransitionScheduler:
                 self._finish_request()
 
     def adopt(self, transition: StanceTransition) -> None:
-        """Take note that a transition begins.
-
-        Parameters
-        ----------
-        transition : StanceTransition
-            The transition.
-        """
+        """Take note that a transition begins."""
         before = self.current
         parameters = transition.parameters if transition.complete else before.parameters
         limitations = transition.limitations

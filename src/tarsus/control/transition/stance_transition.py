@@ -66,13 +66,7 @@ class WalkParameters:
         return tuple(a + b for a, b in zip(self.body, self.correction, strict=True))
 
     def stepping_like(self, others: WalkParameters) -> WalkParameters:
-        """Return how to stand like this, and step like others: their gait, cycle time, and legs out of the gait.
-
-        Parameters
-        ----------
-        others : WalkParameters
-            The others.
-        """
+        """Return how to stand like this, and step like others: their gait, cycle time, and legs out of the gait."""
         return replace(self, gait=others.gait, cycle_time=others.cycle_time, excluded=others.excluded)
 
 
@@ -91,13 +85,7 @@ class StanceTarget(NamedTuple):
     rest: Complex[np.ndarray, "legs"]
 
     def towards(self, other: StanceTarget, fraction: float) -> StanceTarget:
-        """Return the stance at a fraction of the straight path to another.
-
-        Parameters
-        ----------
-        other, fraction : StanceTarget, float
-            The end of the path; 0 for this stance, 1 for the other.
-        """
+        """Return the stance at a fraction of the straight path to another: 0 for this one, 1 for the other."""
         return StanceTarget(*(here + fraction * (there - here) for here, there in zip(self, other, strict=True)))
 
     @property
