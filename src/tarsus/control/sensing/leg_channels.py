@@ -41,10 +41,7 @@ class _LegChannel(Channel, ABC):
     def read(self, value: Any, rejected: list[str]) -> tuple[Any, ...] | None:
         """Return the accepted readings; None for a leg, or for all, where none is.
 
-        Parameters
-        ----------
-        value, rejected : anything, list of str
-            The reading; the reasons of rejections are appended to it.
+        The reasons of rejections are appended to `rejected`.
         """
         if type(value) is np.ndarray and value.shape == self._shapes[0] and self._plausible == self._settled:
             plain = self._plain(value)

@@ -16,13 +16,7 @@ __all__ = ["as_bool", "as_items", "as_number", "as_vector"]
 
 
 def as_number(value: Any) -> float:
-    """Return a value as a float; NaN if it is not a real number.
-
-    Parameters
-    ----------
-    value : anything
-        Expected: a number of Python or NumPy.
-    """
+    """Return a number of Python or NumPy as a float; NaN for anything else, bools included."""
     kind = type(value)
     if kind is float:
         return float(value)
@@ -35,13 +29,7 @@ def as_number(value: Any) -> float:
 
 
 def as_bool(value: Any) -> bool | None:
-    """Return a bool, or a number that is 0 or 1, as a bool; None for anything else.
-
-    Parameters
-    ----------
-    value : anything
-        Expected: a bool or number of Python or NumPy.
-    """
+    """Return a bool of Python or NumPy, or a number that is 0 or 1, as a bool; None for anything else."""
     if issubclass(type(value), bool | np.bool_):
         return bool(value)
     number = as_number(value)
@@ -71,13 +59,7 @@ def as_items(value: Any, *shapes: tuple[int, ...]) -> Sequence[Any] | None:
 
 
 def as_vector(value: Any) -> tuple[float, float, float] | None:
-    """Return three numbers, each NaN if it is not a real number; None if there are not three items.
-
-    Parameters
-    ----------
-    value : anything
-        Expected: a list, tuple or array of three numbers.
-    """
+    """Return three numbers, each NaN if it is not a real number; None if there are not three items."""
     parts = value if type(value) is list and len(value) == 3 else as_items(value, (3,))
     if parts is None:
         return None

@@ -117,13 +117,7 @@ class ReadingsValidator:
 
 
 def rejections(valid: ValidReadings) -> list[Limitation]:
-    """Return the limitations that name rejected readings.
-
-    Parameters
-    ----------
-    valid : ValidReadings
-        The readings.
-    """
+    """Return the limitations that name rejected readings."""
     return [Limitation(kind=LimitationKind.READINGS, cause=reason) for reason in valid.rejected]
 
 

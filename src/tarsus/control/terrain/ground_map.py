@@ -151,13 +151,7 @@ class GroundMap:
         self._height = median(known) if known else self._height
 
     def expected(self, places: Shaped[np.ndarray, "..."]) -> Shaped[np.ndarray, "..."]:
-        """Return the heights at which the known ground is expected at places x + iy: that of the plane in a hole [m].
-
-        Parameters
-        ----------
-        places : complex array, shape (...)
-            The places [m].
-        """
+        """Return the heights at which the known ground is expected at places: that of the plane in a hole [m]."""
         found, level = self._lies(places), np.asarray(self.plane.at(places))
         return np.where(found > level - self._deepest, found, level)
 
@@ -167,23 +161,11 @@ class GroundMap:
         return np.where(np.isnan(known), np.asarray(self.plane.at(places)), known)
 
     def at(self, place: complex) -> float:
-        """Return the height at which the ground is expected at a place [m].
-
-        Parameters
-        ----------
-        place : complex
-            The place [m].
-        """
+        """Return the height at which the ground is expected at a place [m]."""
         return float(self.expected(np.array(place))) if self.given else self.plane.at(place)
 
     def lowest_near(self, place: complex) -> float:
-        """Return the least height at which the ground is expected around a place [m].
-
-        Parameters
-        ----------
-        place : complex
-            The place [m].
-        """
+        """Return the least height at which the ground is expected around a place [m]."""
         within = self._scale * _OFF
         return float(lowest_near(self.expected, np.array(place), within=within)) if self.given else self.plane.at(place)
 
@@ -226,13 +208,7 @@ class GroundMap:
                     self.crossing.add(leg)
 
     def is_hole(self, place: complex) -> bool:
-        """Return whether the known ground at a place, or close to it, is too low to stand on.
-
-        Parameters
-        ----------
-        place : complex
-            The place [m].
-        """
+        """Return whether the known ground at a place, or close to it, is too low to stand on."""
         if not self.given:
             return False
         lowest = lowest_near(self._lies, np.array(place), within=self._scale * _EDGE)

@@ -97,23 +97,14 @@ class Roughness:
         self.adaptation, self._scale = adaptation, scale
 
     def landed(self, off: float) -> None:
-        """Take note of a foothold.
-
-        Parameters
-        ----------
-        off : float
-            Its height over the expected ground [m].
-        """
+        """Take note of a foothold that is so far above the expected ground [m]."""
         self._met = max(self._met, abs(off) - self._scale * _EVEN)
         self.value = max(self.value, self._met)
 
     def at_edge(self, depth: float) -> None:
-        """Take note of a leg that may rest on the edge of a step: beside it, legs are steeper with the body higher.
+        """Take note of a foot so deep below the expected ground that its leg may rest on the edge of a step [m].
 
-        Parameters
-        ----------
-        depth : float
-            How far below the expected ground its foot is [m].
+        Beside it, legs are steeper with the body higher.
         """
         self.value = max(self.value, depth - self._scale * _EVEN)
 
@@ -123,13 +114,7 @@ class Roughness:
         self.value = max(self.value, self._met)
 
     def decay(self, cycles: float) -> None:
-        """Forget.
-
-        Parameters
-        ----------
-        cycles : float
-            Cycles that have passed.
-        """
+        """Forget, as so many cycles have passed."""
         kept = math.exp(-cycles / _MEMORY)
         self.value, self._met = self.value * kept, self._met * kept
         rising = self._lasting + (self._met - self._lasting) * -math.expm1(-cycles / _LASTS)
@@ -157,13 +142,7 @@ class Roughness:
         return max(once, min(_DEEPER * self._lasting, self._scale * _LASTING_DEEPEST))
 
     def cycle_time(self, on_slope: float = 1.0) -> float:
-        """Return the cycle time over that on even ground.
-
-        Parameters
-        ----------
-        on_slope : float
-            What it is at least on a slope, as far as it may change.
-        """
+        """Return the cycle time over that on even ground; on slopes at least `on_slope`, as far as it may change."""
         most = self.adaptation.cycle_time
         longer = max(self._share(_ROUGH, _ROUGHEST) * (most - 1), min(on_slope, most) - 1)
         return 1 + longer * (1 - self._share(_ROUGHEST, _HIGH))

@@ -72,13 +72,7 @@ class Footing(NamedTuple):
 
 
 def holds(feet: Sequence[complex], centre: complex) -> bool:
-    """Return whether a point is inside the polygon of some feet.
-
-    Parameters
-    ----------
-    feet, centre : sequence of complex, complex
-        The feet, x + iy [m]; the point [m].
-    """
+    """Return whether a point is inside the polygon of some feet, x + iy [m]."""
     angles = sorted(cmath.phase(foot - centre) for foot in feet)
     if len(angles) < 3:
         return False
