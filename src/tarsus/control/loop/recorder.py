@@ -63,22 +63,13 @@ class Recorder:
         return self._times[-1]
 
     def note(self, kind: str, text: str) -> None:
-        """Note an event at the time of the last tick.
-
-        Parameters
-        ----------
-        kind, text : str
-            See `Event`.
-        """
+        """Note an event of a kind at the time of the last tick, with a text: see `Event`."""
         self._events.append(Event(self.time, self.time, kind, text))
 
     def command(self, command: Command) -> None:
-        """Note what is commanded for the next tick; what it replaces has been met by now, or is unmet.
+        """Note the command for the next tick, with everything that holds.
 
-        Parameters
-        ----------
-        command : Command
-            The command, with everything that holds.
+        What it replaces has been met by now, or is unmet.
         """
         if command is self._command:
             return
@@ -136,13 +127,7 @@ class Recorder:
         self._present = lately | present
 
     def recording(self, *, name: str, rate: float) -> Recording:
-        """Return the recording.
-
-        Parameters
-        ----------
-        name, rate : str, float
-            What the run is called; nominal ticks per second [1/s].
-        """
+        """Return the recording of a run of this name, with so many ticks per second [1/s]."""
         for since, limitation in self._limited:
             self._note_unmet(since, limitation)
         outputs = self._outputs

@@ -85,13 +85,7 @@ class MotionSequence:
         return self.stages[-1].angles_end
 
     def stage_at(self, time: float) -> tuple[Stage, float]:
-        """Return the stage at a time, and the elapsed fraction of its duration.
-
-        Parameters
-        ----------
-        time : float
-            Time since the start, clamped to the sequence [s].
-        """
+        """Return the stage at a time, clamped to the sequence [s], and the elapsed fraction of its duration."""
         index = min(int(np.searchsorted(self.starts, time, side="right")) - 1, len(self.stages) - 1)
         stage = self.stages[max(index, 0)]
         elapsed = (time - self.starts[max(index, 0)]) / stage.duration if stage.duration else 1.0

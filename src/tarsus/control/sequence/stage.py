@@ -92,29 +92,12 @@ class Stage:
     belly: bool
 
     def transformed(self, pose: Pose) -> Self:
-        """Return the stage moved in G.
-
-        Parameters
-        ----------
-        pose : Pose
-            Transform of G: yaw and horizontal translation.
-        """
+        """Return the stage moved in G by a yaw and a horizontal translation."""
         points = {name: pose @ getattr(self, name) for name in ("feet", "feet_end", "supports")}
         return replace(self, start=pose @ self.start, end=pose @ self.end, **points)
 
     def body_at(self, fractions: Float[np.ndarray, "n"]) -> Pose:
-        """Return the poses of B in G.
-
-        Parameters
-        ----------
-        fractions : array, shape (n,)
-            Fractions of the duration.
-
-        Returns
-        -------
-        Pose
-            A batch of shape (n,).
-        """
+        """Return the poses of B in G at fractions of the duration: a batch of shape (n,)."""
         progress = horizontal_profile(fractions)[:, None]
         axis, angle = axis_and_angle(self.end.rotation @ self.start.rotation.T)
         if not angle:
@@ -124,17 +107,9 @@ class Stage:
         return Pose(rotation, first + progress * (last - first) - rotation @ self.pivot)
 
     def feet_at(self, fractions: Float[np.ndarray, "n"]) -> Float[np.ndarray, "n legs 3"]:
-        """Return the Cartesian paths of the feet in G; meaningless for legs that follow a path in joint space.
+        """Return the Cartesian paths of the feet in G at fractions of the duration: array, shape (n, legs, 3) [m].
 
-        Parameters
-        ----------
-        fractions : array, shape (n,)
-            Fractions of the duration.
-
-        Returns
-        -------
-        array, shape (n, legs, 3)
-            Feet in G [m].
+        They are meaningless for legs that follow a path in joint space.
         """
         progress = horizontal_profile(fractions)[:, None, None]
         feet: np.ndarray = self.feet + progress * (self.feet_end - self.feet)
@@ -143,18 +118,7 @@ class Stage:
         return feet
 
     def angles_at(self, fractions: Float[np.ndarray, "n"]) -> Float[np.ndarray, "n legs 3"]:
-        """Return the joint angles; NaN where a foot is out of reach.
-
-        Parameters
-        ----------
-        fractions : array, shape (n,)
-            Fractions of the duration.
-
-        Returns
-        -------
-        array, shape (n, legs, 3)
-            Joint angles [rad].
-        """
+        """Return the joint angles at fractions of the duration; NaN where a foot is out of reach [rad]."""
         progress = horizontal_profile(fractions)[:, None, None]
         angles: np.ndarray = self.angles + progress * (self.angles_end - self.angles)
         if self.cartesian.any():
@@ -198,13 +162,7 @@ class Stage:
         return np.gradient(angles, step, axis=0, edge_order=2), second
 
     def shortest_duration(self, limits: JointLimits) -> float:
-        """Return the shortest duration within the joint limits [s].
-
-        Parameters
-        ----------
-        limits : JointLimits
-            Greatest joint speeds and accelerations.
-        """
+        """Return the shortest duration within limits of the joints [s]."""
         speed, acceleration = (np.abs(values).max(0) for values in self.derivatives)
         by_speed = float((speed / limits.speed).max()) / _SPEED_FRACTION
         return max(by_speed, float(np.sqrt((acceleration / limits.acceleration).max() / _ACCELERATION_FRACTION)))

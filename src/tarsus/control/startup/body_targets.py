@@ -24,13 +24,7 @@ _EXTRA_HEIGHT = 0.04
 
 
 def body_targets(builder: SequenceBuilder, height: float) -> tuple[BodyTarget, ...]:
-    """Return the candidate level poses, the most promising one first.
-
-    Parameters
-    ----------
-    builder, height : SequenceBuilder, float
-        The robot in its initial state; final body height [m].
-    """
+    """Return the candidate level poses for a final body height [m], the most promising one first."""
     robot, body = builder.robot, builder.body
     up = body.rotation[2]
     upright = levelling_rotation(body.rotation[:, 2]) @ body.rotation

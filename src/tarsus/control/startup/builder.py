@@ -109,13 +109,7 @@ class SequenceBuilder:
         return float(self.body.position[2])
 
     def hold(self, name: str) -> Stage:
-        """Return a stage of one second in which nothing moves.
-
-        Parameters
-        ----------
-        name : str
-            Name of the stage.
-        """
+        """Return a stage of this name, of one second, in which nothing moves."""
         feet = self.feet
         return Stage(
             name=name,
@@ -207,13 +201,7 @@ class SequenceBuilder:
         return builder._add(name, end=target.body, pivot=target.pivot, cartesian=stationary)
 
     def unload(self, leg: int) -> Self:
-        """Return the robot with a leg that bears no load, neither on its foot nor on its knee or femur axis.
-
-        Parameters
-        ----------
-        leg : int
-            Index of the leg.
-        """
+        """Return the robot with a leg that bears no load, neither on its foot nor on its knee or femur axis."""
         others = (np.abs(self.supports[:, None] - self.points[leg, 1:3]) > GROUND_TOLERANCE).any(-1).all(-1)
         contacts = self.contacts & (np.arange(self.robot.legs) != leg)
         return replace(self, supports=self.supports[others], contacts=contacts)
@@ -223,13 +211,7 @@ class SequenceBuilder:
         return replace(self, belly=True, supports=body_contacts(self.robot, self.body))
 
     def end_at(self, angles: Float[np.ndarray, "legs 3"]) -> Self:
-        """Return the robot with final joint angles that are equal to the present ones up to rounding.
-
-        Parameters
-        ----------
-        angles : array, shape (legs, 3)
-            Joint angles [rad].
-        """
+        """Return the robot with final joint angles that are equal to the present ones up to rounding [rad]."""
         angles = np.array(angles)
         angles.setflags(write=False)
         last = [replace(stage, angles_end=angles) for stage in self.stages[-1:]]
@@ -262,18 +244,7 @@ class SequenceBuilder:
 
 
 def body_contacts(robot: Robot, body: Pose) -> Float[np.ndarray, "n 3"]:
-    """Return the points of the body's underside that are on the ground.
-
-    Parameters
-    ----------
-    robot, body : Robot, Pose
-        A single robot; pose of B in G.
-
-    Returns
-    -------
-    array, shape (n, 3)
-        Points in G [m].
-    """
+    """Return the points of the body's underside that are on the ground: array, shape (n, 3), in G [m]."""
     points: np.ndarray = body @ underside_points(robot)
     return points[points[:, 2] < GROUND_TOLERANCE]
 

@@ -66,13 +66,7 @@ class PersistentCommand:
         )
 
     def keep(self, command: Command, full: Command) -> None:
-        """Hold to a merged command from now on.
-
-        Parameters
-        ----------
-        command, full : Command, Command
-            What was merged; the result of `merged`.
-        """
+        """Hold to a command from now on, and to what `merged` has made of it."""
         self.full, self._last = full, (command, full)
 
     def forget_released(self) -> None:
