@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, Self
 
 import numpy as np
 
+from tarsus.arrays import require_float
 from tarsus.errors import InputError
 from tarsus.representation import represented
 from tarsus.robot.joint_limits import STOPPING_TIME, UNKNOWN_SPEED, joint_limits, servo_speeds
@@ -83,12 +84,12 @@ class GuardBounds:
         for name in ("speed", "acceleration"):
             self._lock(name, _per_joint(name, getattr(self, name), len(self.limits)))
         for name, high, zero in ((each.name, *each.metadata.values()) for each in fields(self) if each.metadata):
-            value = _number(name, getattr(self, name))
+            value = require_float(f"guard bound {name}", getattr(self, name))
             object.__setattr__(self, name, value)
             if not (value > 0 or (zero and value == 0)) or not value <= high:
                 at_least = "at least" if zero else "greater than"
                 raise InputError(f"guard bound {name} is {value:g}; it must be {at_least} 0 and at most {high:g}")
-        object.__setattr__(self, "margin", _number("margin", self.margin))
+        object.__setattr__(self, "margin", require_float("guard bound margin", self.margin))
         if math.isnan(self.margin):
             raise InputError("guard bound margin is nan; it must be a number [m], minus infinity to disable the check")
         if self.max_time_step < self.min_time_step:
@@ -135,13 +136,6 @@ class GuardBounds:
         if len(bounds.limits) != robot.legs:
             raise InputError(f"guard bound limits is for {len(bounds.limits)} legs; {robot.name!r} has {robot.legs}")
         return bounds
-
-
-def _number(name: str, value: Any) -> float:
-    try:
-        return float(value)
-    except (TypeError, ValueError):
-        raise InputError(f"guard bound {name} is {value!r:.80}; it must be a number") from None
 
 
 def _numbers(name: str, value: Any) -> Float[np.ndarray, "*batch"]:
