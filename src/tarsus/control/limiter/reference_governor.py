@@ -12,7 +12,7 @@ from tarsus.control.limiter.protocol import TwistGrant, TwistRequest
 from tarsus.control.transition.executor import TransitionExecutor
 from tarsus.control.walk.reference_governor import FootPrediction
 from tarsus.control.walk.state import GaitState
-from tarsus.gait.foot_polygons import NORMALS_CONJUGATE
+from tarsus.gait.foot_polygons import polygon_margin
 
 if TYPE_CHECKING:
     from jaxtyping import Float
@@ -69,5 +69,5 @@ class GovernorLimiter:
 
     def _is_behind(self, state: GaitState) -> bool:
         """Return whether a foot that stands is outside its polygon: one that has landed short of its foothold."""
-        along = (NORMALS_CONJUGATE * state.in_heading(state.foot)[:, None]).real
-        return bool((along > self._transitions.bounds)[state.down].any())
+        margins = polygon_margin(self._transitions.bounds, state.in_heading(state.foot))
+        return bool((margins < 0)[state.down].any())

@@ -8,7 +8,7 @@ import numpy as np
 
 from tarsus.control.transition.stance_transition import StanceTransition
 from tarsus.control.walk.state import POSITION_TOLERANCE
-from tarsus.gait.foot_polygons import NORMALS_CONJUGATE
+from tarsus.gait.foot_polygons import NORMALS_CONJUGATE, polygon_margin
 from tarsus.gait.stance.velocity_limits import VelocityLimits
 
 if TYPE_CHECKING:
@@ -55,8 +55,7 @@ class FootholdTransfer:
 
     def _update_placement(self) -> None:
         landing = np.where(self._lands_at_old[:, None], self.bounds, self._next_bounds)
-        along = (NORMALS_CONJUGATE * self._level_rest[:, None]).real
-        self.placement_bounds: Float[np.ndarray, "legs 16"] = np.maximum(landing - along, 0.0)
+        self.placement_bounds: Float[np.ndarray, "legs 16"] = polygon_margin(landing, self._level_rest).clip(0.0)
         self.placement_radii: list[float] = self.placement_bounds.min(axis=1).tolist()
         self.rest: Complex[np.ndarray, "legs"] = self._level_rest + self._shift
 
