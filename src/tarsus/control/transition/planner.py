@@ -87,7 +87,6 @@ class TransitionPlanner:
             cycle_time = require_number("cycle_time", cycle_time, zero=False)
         parameters = WalkParameters(
             gait=setup.gait,
-            body=(0.0,) * 6,
             body_height=setup.body_height,
             swing_height=setup.swing_height,
             stance_width=stance_width,
@@ -144,14 +143,13 @@ class TransitionPlanner:
             if fraction == 0:
                 return TIPPING
             limits = yield from self._limits(parameters, path.at(fraction))
-        found, first = (yield from self._increment(parameters, path, fraction, limits)), None
-        while isinstance(found, Cause):
+        first: Cause | None = None
+        while isinstance(found := (yield from self._increment(parameters, path, fraction, limits)), Cause):
             fraction, first = fraction / 2, first or found
             if fraction < _LEAST_FRACTION or path.start is end:
                 return first
             yield
             limits = yield from self._limits(parameters, path.at(fraction))
-            found = yield from self._increment(parameters, path, fraction, limits)
         shortfalls = () if end is present else self._shortfalls(parameters, path)
         return replace(
             found,

@@ -34,14 +34,14 @@ class WalkParameters:
     ----------
     gait : Gait
         Order of the steps.
-    body : tuple of float
-        Body pose against level at the body height: x, y, z [m], roll, pitch, yaw [rad].
     body_height, swing_height : float
         Height of the body's origin over the ground, and of a swinging foot over its foothold [m].
     stance_width : float
         Distance that the feet rest farther out than by default [m].
     cycle_time : float or None
         Duration of a cycle [s]; None for the one with the highest top speed.
+    body : tuple of float
+        Body pose against level at the body height: x, y, z [m], roll, pitch, yaw [rad].
     sway : tuple of float
         Amplitudes of the body's sway, axes as in `body`.
     correction : tuple of float
@@ -51,11 +51,11 @@ class WalkParameters:
     """
 
     gait: Gait
-    body: tuple[float, ...]
     body_height: float
     swing_height: float
     stance_width: float
     cycle_time: float | None
+    body: tuple[float, ...] = (0.0,) * 6
     sway: tuple[float, ...] = (0.0,) * 6
     correction: tuple[float, ...] = (0.0,) * 6
     excluded: tuple[int, ...] = ()
