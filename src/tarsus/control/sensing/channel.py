@@ -9,12 +9,11 @@ from typing import Any, TypeVar
 from tarsus.control.readings import RollPitch, Vector
 from tarsus.control.sensing.plain_values import as_items, as_number, as_vector
 
-__all__ = ["SETTLED", "AngularRateChannel", "AttitudeChannel", "Channel"]
-
-SETTLED = 3
-"""Consecutive plausible readings after which what was rejected is accepted again."""
+__all__ = ["AngularRateChannel", "AttitudeChannel", "Channel"]
 
 _T = TypeVar("_T")
+# Consecutive plausible readings after which what was rejected is accepted again.
+_SETTLED = 3
 # Greatest magnitude of roll and pitch [rad], and greatest rate of change of each [rad/s].
 _MOST_TILT, _MOST_TURN = math.radians(60.0), 6.0
 # Allowance for sensor noise in the change between two readings [rad].
@@ -38,11 +37,11 @@ class Channel:
     """
 
     def __init__(self, names: Sequence[str]) -> None:
-        # Consecutive plausible readings of each part, at most `SETTLED`.
-        self._names, self._plausible, self.now = names, [SETTLED] * len(names), 0.0
+        # Consecutive plausible readings of each part, at most `_SETTLED`.
+        self._names, self._plausible, self.now = names, [_SETTLED] * len(names), 0.0
 
     def reset(self) -> None:
-        """Reject every part until it has been plausible `SETTLED` times in a row."""
+        """Reject every part until it has been plausible `_SETTLED` times in a row."""
         self._plausible = [0] * len(self._plausible)
 
     def _accepted(self, part: int, reading: _T | str, rejected: list[str]) -> _T | None:
@@ -50,7 +49,7 @@ class Channel:
         if isinstance(reading, str):
             self._plausible[part] = 0
             rejected.append(f"{self._names[part]}: {reading}")
-        elif self._plausible[part] < SETTLED:
+        elif self._plausible[part] < _SETTLED:
             self._plausible[part] += 1
             rejected.append(f"{self._names[part]}: settling after a rejected reading")
         else:

@@ -86,9 +86,9 @@ class MotionSequence:
 
     def stage_at(self, time: float) -> tuple[Stage, float]:
         """Return the stage at a time, clamped to the sequence [s], and the elapsed fraction of its duration."""
-        index = min(int(np.searchsorted(self.starts, time, side="right")) - 1, len(self.stages) - 1)
-        stage = self.stages[max(index, 0)]
-        elapsed = (time - self.starts[max(index, 0)]) / stage.duration if stage.duration else 1.0
+        index = min(max(int(np.searchsorted(self.starts, time, side="right")) - 1, 0), len(self.stages) - 1)
+        stage = self.stages[index]
+        elapsed = (time - self.starts[index]) / stage.duration if stage.duration else 1.0
         return stage, min(max(elapsed, 0.0), 1.0)
 
     def at(self, time: float) -> SequenceSample:

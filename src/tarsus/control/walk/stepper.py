@@ -15,18 +15,15 @@ from tarsus.gait.swing_trajectory import quintic
 if TYPE_CHECKING:
     from jaxtyping import Complex
 
-__all__ = ["LATEST_LIFT_OFF", "TARGET_FREEZE", "advance", "land", "stance_tolerance"]
+__all__ = ["TARGET_FREEZE", "advance", "land", "stance_tolerance"]
 
 TARGET_FREEZE = 0.6
 """Swing phase from which on the foothold stays: the rest of the swing suffices to reach it smoothly."""
 
-LATEST_LIFT_OFF = 0.5
-"""Greatest fraction of its swing by which a foot that lifts off late may swing shorter."""
-
-# Bandwidth of the admittance offsets [rad/s].
-_ADMITTANCE_BANDWIDTH = 20.0
-# Bandwidth of the body shift's coefficients [rad/s].
-_SHIFT_BANDWIDTH = 5.0
+# Greatest fraction of its swing by which a foot that lifts off late may swing shorter.
+_LATEST = 0.5
+# Bandwidths of the admittance offsets and of the body shift's coefficients [rad/s].
+_ADMITTANCE_BANDWIDTH, _SHIFT_BANDWIDTH = 20.0, 5.0
 # A foot that feels the ground is at its rest foothold within the first distance, and stays there within the second [m].
 _FELT_TOLERANCES = (0.015, 0.03)
 # Part of its way up to which a foot that feels the ground swings out.
@@ -121,7 +118,7 @@ def _lift(
         ground_height=np.where(lifts, start if state.felt else 0.0, state.ground_height),
         admittance_offset=offset,
         # Feet that lift off late swing shorter.
-        lift_delay=np.where(due, np.clip(late, 0.0, LATEST_LIFT_OFF * (1 - inputs.gait.duty_factor)), state.lift_delay),
+        lift_delay=np.where(due, np.clip(late, 0.0, _LATEST * (1 - inputs.gait.duty_factor)), state.lift_delay),
     )
 
 

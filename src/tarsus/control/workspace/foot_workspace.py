@@ -26,9 +26,7 @@ if TYPE_CHECKING:
 
 __all__ = ["foot_workspace", "rest_margin"]
 
-_RAYS, _SIDES, _RINGS, _FINE = 24, len(NORMALS), 8, 5
-# Number of inner rings.
-_INNER = 5
+_RAYS, _SIDES, _RINGS, _INNER, _FINE = 24, len(NORMALS), 8, 5, 5
 _DIRECTIONS = np.exp(2j * np.pi * np.arange(_RAYS) / _RAYS)
 # Greatest number of passes that move sides inwards.
 _PASSES = 6
