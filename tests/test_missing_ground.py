@@ -993,6 +993,14 @@ def test_a_foot_that_collides_is_drawn_back_from_where_it_is_measured():
     assert start == pytest.approx(state.in_heading(complex(state.foot[0]) - 0.03 - 0.04))
 
 
+@pytest.mark.parametrize(("sunk", "collides"), [(0.0, True), (0.01, True), (0.025, False)])
+def test_a_swinging_foot_that_a_sinking_body_sets_down_has_met_no_obstacle(sunk, collides):
+    state, body, timing = touching_in_swing(0.3, 0.03, FeltFoot(speed=0.0, top=0.05, top_phase=0.42))
+    body.contacts.sunk[0] = sunk
+    after, _ = met_ground(state, body, MissingGround(NAMES), stopped=[], error=as_commanded, timing=timing, pace=1.0)
+    assert (after.felt[0].drawn_back is not None) == (body.roughness.value > 0.0) == collides
+
+
 @pytest.mark.parametrize(("height", "sunk", "off"), [(0.03, 0.0, 0.03), (0.03, 0.02, 0.01), (-0.03, 0.02, 0.03)])
 def test_ground_that_a_foot_meets_sooner_as_the_body_tips_towards_it_is_not_rough(height, sunk, off):
     state, body, timing = touching_in_swing(0.8, height, FeltFoot(speed=-0.1, top=0.03, top_phase=0.42))

@@ -136,8 +136,10 @@ def _landed(state: GaitState, leg: int, timing: StepTiming, pace: float) -> Gait
 
 def _collides(state: GaitState, leg: int, contacts: FootContacts, *, scale: float, stopped: bool = False) -> bool:
     """Return whether a foot that feels contact in the first half of its swing has met an obstacle."""
-    # A contact is that of a moment ago, and the foot lags behind its command: it was lower.
+    # A contact is that of a moment ago, and the foot lags behind its command: it was lower. A body that sinks at the
+    # foot by its tilt sets it down.
     then = float(state.ground_height[leg]) - max(state.felt[leg].speed, 0.0) * (contacts.age + USUAL_LAG)
+    then -= max(contacts.sunk[leg], 0.0)
     least = scale * (_LIFTED if stopped or contacts.lifted[leg] else _RISEN)
     return state.felt[leg].drawn_back is None and then - float(state.start_height[leg]) > least
 
