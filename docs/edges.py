@@ -7,6 +7,7 @@ python docs/edges.py --robots strider --sensors switches camera --print
 from __future__ import annotations
 
 import argparse
+import dataclasses
 import itertools
 import math
 from collections.abc import Iterable
@@ -20,6 +21,7 @@ from estimated_contacts import JOINTS
 from page_tables import Several, measured, write_tables
 from rough_ground import LIES, PAGE, ROBOTS, blocks, switches
 from tarsus.simulation import SimulatedPlant, terrain
+from tarsus.simulation.sensors.suite import Sensor
 from tarsus.simulation.terrain.surface import surface
 
 # Depth of steps down and of trenches, widths of trenches, where their first edge is, what is walked ahead and back [m].
@@ -29,6 +31,7 @@ PACES = (0.25, 0.5, 0.9)
 SENSORS: dict[str, Any] = {
     "joint angles": JOINTS,
     "switches": switches(),
+    "switches, joint angles": dataclasses.replace(switches(), angular_rates=Sensor(), joint_angles=Sensor()),
     "hobby": "hobby",
     "all but camera": "ideal",
     "camera": "camera",

@@ -258,13 +258,14 @@ def test_ground_may_be_deeper_at_once_and_more_so_where_roughness_lasts():
     assert half.deeper == 0.025
 
 
-def test_an_edge_raises_swings_and_the_body_but_allows_for_no_deeper_ground():
+def test_an_edge_raises_swings_and_the_body_but_is_no_rough_or_deeper_ground():
     roughness = Roughness(tarsus.GroundAdaptation())
     roughness.at_edge(0.048)
     assert roughness.swing_rise == roughness.body_rise == pytest.approx(0.04)
-    assert roughness.deeper == 0.0
+    assert roughness.value == roughness.deeper == roughness.drawn_in == 0.0
+    assert roughness.speed == roughness.cycle_time() == 1.0
     roughness.decay(4.0)
-    assert roughness.value == pytest.approx(0.04 / math.e)
+    assert roughness.swing_rise == roughness.body_rise == pytest.approx(0.04 / math.e)
     # What feet have met before still counts.
     roughness.landed(0.018)
     roughness.at_edge(0.1)

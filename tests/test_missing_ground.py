@@ -566,6 +566,18 @@ def test_a_robot_stops_at_an_edge_in_ticks_of_20_ms_too():
 
 
 @pytest.mark.no_cover
+@pytest.mark.parametrize("edge", [0.515, 0.53])
+def test_a_robot_whose_leg_has_rested_on_an_edge_walks_back_from_it_calmly(edge):
+    # The ground there is not rough: feet that went down faster, and pressed on it, tilted the body by 12 to 15 degrees.
+    robot, sensors = tarsus.load_robot("phantomx"), edges.SENSORS["switches, joint angles"]
+    speed = 0.25 * tarsus.WalkController(robot).top_speed((1.0, 0.0, 0.0))
+    commands = (((speed, 0.0, 0.0), 0.9 / speed), ((-speed, 0.0, 0.0), 0.2 / speed))
+    found, way = edges.drive(robot, terrain.Step(rise=-0.3, start=edge), sensors, commands, 0.02)
+    assert way[-1] < max(way) - 0.05
+    assert found.tilt < 10
+
+
+@pytest.mark.no_cover
 def test_legs_with_stiff_servos_that_collide_do_not_throw_the_robot_over():
     # A foot that went on at its speed, and then rose along the face of a block, pulled the body down by 36 degrees.
     robot, ground = tarsus.load_robot("makeyourpet"), terrain.Blocks(rise=0.06, size=0.15, clear=0.35, seed=5)

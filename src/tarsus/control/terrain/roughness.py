@@ -93,42 +93,41 @@ class Roughness:
     """
 
     def __init__(self, adaptation: GroundAdaptation, *, scale: float = 1.0) -> None:
-        self.value = self._met = self._lasting = 0.0
+        self.value = self._lasting = self._edge = 0.0
         self.adaptation, self._scale = adaptation, scale
 
     def landed(self, off: float) -> None:
         """Take note of a foothold that is so far above the expected ground [m]."""
-        self._met = max(self._met, abs(off) - self._scale * _EVEN)
-        self.value = max(self.value, self._met)
+        self.value = max(self.value, abs(off) - self._scale * _EVEN)
 
     def at_edge(self, depth: float) -> None:
         """Take note of a foot so deep below the expected ground that its leg may rest on the edge of a step [m].
 
-        Beside it, legs are steeper with the body higher.
+        Beside it, legs are steeper with the body higher. The ground there is not rough: feet that went down faster and
+        pressed on it would tip the robot over the edge.
         """
-        self.value = max(self.value, depth - self._scale * _EVEN)
+        self._edge = max(self._edge, depth - self._scale * _EVEN)
 
     def collided(self) -> None:
         """Take note of a collision."""
-        self._met = max(self._met, self._scale * _COLLISION)
-        self.value = max(self.value, self._met)
+        self.value = max(self.value, self._scale * _COLLISION)
 
     def decay(self, cycles: float) -> None:
         """Forget, as so many cycles have passed."""
         kept = math.exp(-cycles / _MEMORY)
-        self.value, self._met = self.value * kept, self._met * kept
-        rising = self._lasting + (self._met - self._lasting) * -math.expm1(-cycles / _LASTS)
-        self._lasting = min(rising, self._met)
+        self.value, self._edge = self.value * kept, self._edge * kept
+        rising = self._lasting + (self.value - self._lasting) * -math.expm1(-cycles / _LASTS)
+        self._lasting = min(rising, self.value)
 
     @property
     def swing_rise(self) -> float:
         """Addition to the swing height [m]."""
-        return min(self.value, self._scale * self.adaptation.swing_height)
+        return min(max(self.value, self._edge), self._scale * self.adaptation.swing_height)
 
     @property
     def body_rise(self) -> float:
         """Addition to the body height [m]."""
-        return min(self.value, self._scale * self.adaptation.body_height)
+        return min(max(self.value, self._edge), self._scale * self.adaptation.body_height)
 
     @property
     def drawn_in(self) -> float:
@@ -138,7 +137,7 @@ class Roughness:
     @property
     def deeper(self) -> float:
         """How much deeper ground may be than expected [m]."""
-        once = min(_DEEPER * self._met, self._scale * _DEEPEST)
+        once = min(_DEEPER * self.value, self._scale * _DEEPEST)
         return max(once, min(_DEEPER * self._lasting, self._scale * _LASTING_DEEPEST))
 
     def cycle_time(self, on_slope: float = 1.0) -> float:
