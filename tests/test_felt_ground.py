@@ -258,11 +258,12 @@ def test_ground_may_be_deeper_at_once_and_more_so_where_roughness_lasts():
     assert half.deeper == 0.025
 
 
-def test_an_edge_raises_swings_and_the_body_but_is_no_rough_or_deeper_ground():
+def test_an_edge_raises_swings_and_the_body_and_draws_feet_in_but_is_no_rough_or_deeper_ground():
     roughness = Roughness(tarsus.GroundAdaptation())
     roughness.at_edge(0.048)
     assert roughness.swing_rise == roughness.body_rise == pytest.approx(0.04)
-    assert roughness.value == roughness.deeper == roughness.drawn_in == 0.0
+    assert roughness.drawn_in == pytest.approx(0.02)
+    assert roughness.value == roughness.deeper == 0.0
     assert roughness.speed == roughness.cycle_time() == 1.0
     roughness.decay(4.0)
     assert roughness.swing_rise == roughness.body_rise == pytest.approx(0.04 / math.e)

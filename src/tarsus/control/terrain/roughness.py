@@ -103,8 +103,8 @@ class Roughness:
     def at_edge(self, depth: float) -> None:
         """Take note of a foot so deep below the expected ground that its leg may rest on the edge of a step [m].
 
-        Beside it, legs are steeper with the body higher. The ground there is not rough: feet that went down faster and
-        pressed on it would tip the robot over the edge.
+        Beside it, legs are steeper with the body higher and the feet drawn in. The ground there is not rough: feet that
+        went down faster and pressed on it would tip the robot over the edge.
         """
         self._edge = max(self._edge, depth - self._scale * _EVEN)
 
@@ -132,7 +132,7 @@ class Roughness:
     @property
     def drawn_in(self) -> float:
         """How far feet are drawn in [m]."""
-        return self._share(0.0, _ROUGH) * self._scale * self.adaptation.drawn_in
+        return self._share(max(self.value, self._edge), 0.0, _ROUGH) * self._scale * self.adaptation.drawn_in
 
     @property
     def deeper(self) -> float:
@@ -143,15 +143,15 @@ class Roughness:
     def cycle_time(self, on_slope: float = 1.0) -> float:
         """Return the cycle time over that on even ground; on slopes at least `on_slope`, as far as it may change."""
         most = self.adaptation.cycle_time
-        longer = max(self._share(_ROUGH, _ROUGHEST) * (most - 1), min(on_slope, most) - 1)
-        return 1 + longer * (1 - self._share(_ROUGHEST, _HIGH))
+        longer = max(self._share(self.value, _ROUGH, _ROUGHEST) * (most - 1), min(on_slope, most) - 1)
+        return 1 + longer * (1 - self._share(self.value, _ROUGHEST, _HIGH))
 
     @property
     def speed(self) -> float:
         """Greatest speed over the top speed on even ground."""
-        return 1 - self._share(_ROUGH, _ROUGHEST) * (1 - self.adaptation.speed)
+        return 1 - self._share(self.value, _ROUGH, _ROUGHEST) * (1 - self.adaptation.speed)
 
-    def _share(self, least: float, most: float) -> float:
-        """Return where the roughness is between two values, 0 to 1."""
-        share = (self.value / self._scale - least) / (most - least)
+    def _share(self, value: float, least: float, most: float) -> float:
+        """Return where a roughness is between two values, 0 to 1."""
+        share = (value / self._scale - least) / (most - least)
         return min(max(round(_STEPS * share) / _STEPS, 0.0), 1.0)
