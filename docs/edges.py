@@ -20,8 +20,7 @@ import tarsus
 from estimated_contacts import JOINTS
 from page_tables import Several, measured, write_tables
 from rough_ground import LIES, PAGE, ROBOTS, blocks, switches
-from tarsus.simulation import SimulatedPlant, terrain
-from tarsus.simulation.sensors.suite import Sensor
+from tarsus.simulation import Sensor, SimulatedPlant, terrain
 from tarsus.simulation.terrain.surface import surface
 
 # Depth of steps down and of trenches, widths of trenches, where their first edge is, what is walked ahead and back [m].
