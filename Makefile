@@ -81,6 +81,7 @@ truth: $(VENV)/.dev
 	$(BIN)/python docs/edges.py
 	$(BIN)/python docs/obstacles.py
 	$(BIN)/python docs/sensor_faults.py
+	$(BIN)/python docs/leg_failures.py
 	$(BIN)/python docs/estimated_contacts.py
 	$(BIN)/python docs/ablation.py
 

@@ -1,4 +1,4 @@
-"""Write the tables of faults in ground-measured.md: what bad readings cost, and how a robot walks on without a leg.
+"""Write the table of faults in ground-measured.md: what bad readings cost.
 
 python docs/sensor_faults.py --seeds 5 --jobs 2
 python docs/sensor_faults.py --robots strider --faults 'hobby sensors' --print
@@ -102,49 +102,6 @@ def _fault_table(robot: str, faults: list[str], found: dict[tuple[str, str, str]
     return "\n".join(lines)
 
 
-FAILURE_AT, FAILURE_TIME = 2.0, 15.0
-JOINTS = ("coxa", "femur", "tibia")
-FAILURES = [(1, 1, "limp"), (0, 1, "limp"), (2, 1, "limp"), (1, 1, "stuck"), (0, 0, "stuck"), (0, 2, "limp")]
-
-
-def without_leg(name: str, leg: int, joint: int, kind: str) -> str:
-    """Return the cells of a walk in which a servo fails: found after, speed from then on, greatest tilt, falls."""
-    robot, dt = tarsus.load_robot(name), 0.01
-    speed = 0.5 * tarsus.WalkController(robot).top_speed((1, 0, 0))
-    plant, controller = SimulatedPlant(robot), tarsus.RobotController(robot)
-    plant.start(controller.output)
-    drives = len(plant.mj_model.actuator_gainprm) // (3 * robot.legs)
-    number, found, steepest, touched, start = 3 * leg + joint, math.inf, 0.0, False, (0.0, 0.0)
-    for tick in range(round(FAILURE_TIME / dt)):
-        time = tick * dt
-        if tick == round(FAILURE_AT / dt) and kind == "limp":
-            servo = slice(drives * number, drives * (number + 1))
-            plant.mj_model.actuator_gainprm[servo] = plant.mj_model.actuator_biasprm[servo] = 0.0
-        elif tick == round(FAILURE_AT / dt):
-            plant.mj_model.dof_frictionloss[6 + number] = 50.0
-        readings = plant.step(controller.output, dt)
-        state = plant.state
-        steepest = max(steepest, math.hypot(*np.asarray(state.body.rpy).tolist()[:2]))
-        touched = touched or bool(state.body_touches)
-        controller.step((speed, 0.0, 0.0), dt, readings)
-        if leg in controller.leg_failures.failed and math.isinf(found):
-            found, start = time - FAILURE_AT, (time, float(state.body.position[0]))
-    if math.isinf(found):
-        return "not found | | |"
-    pace = 1e3 * (float(plant.state.body.position[0]) - start[1]) / (FAILURE_TIME - start[0])
-    return f"{found:.1f} s | {pace:.0f} mm/s | {math.degrees(steepest):.0f} deg | {'yes' if touched else 'no'} |"
-
-
-def failure_table(robots: list[str]) -> str:
-    """Return the table of servos that fail."""
-    lines = ["| robot | servo | found after | speed then | tilt | body touches |", "|---|---|---|---|---|---|"]
-    for name in robots:
-        for leg, joint, kind in FAILURES:
-            code = tarsus.load_robot(name).leg_codes[leg]
-            lines.append(f"| {name} | {code} {JOINTS[joint]} {kind} | {without_leg(name, leg, joint, kind)}")
-    return "\n".join(lines)
-
-
 def medians(found: list[tuple[float, float]]) -> str:
     """Return the medians of way and tilt."""
     way, tilt = np.median(found, axis=0).tolist()
@@ -152,11 +109,8 @@ def medians(found: list[tuple[float, float]]) -> str:
 
 
 def tables(asked: argparse.Namespace) -> dict[str, str]:
-    """Measure, and return the tables."""
-    return {
-        "sensor faults": fault_tables(asked),
-        "leg failures": failure_table(asked.robots),
-    }
+    """Measure, and return the table."""
+    return {"sensor faults": fault_tables(asked)}
 
 
 if __name__ == "__main__":

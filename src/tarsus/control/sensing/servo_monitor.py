@@ -36,9 +36,10 @@ _MOST_WEIGHT, _MOST_IDLE, _MOST_PULLING = 6.0, 15.0, 1.0
 _FEMUR = 1
 # Share that counts where the foot touches the ground, which may stall the servo, unless its torque tells that it idles.
 _STALLED = 0.2
-# Where neither torque nor touch tells, a femur that the ground has pushed up by so much [rad], more than nearly any
-# that holds on, and the greatest factor then.
-_GIVES_WAY, _MOST_GIVING_WAY = 0.6, 30.0
+# Where neither torque nor touch tells: error of a femur that the ground has pushed up, by the second [rad], more than
+# nearly any that holds on, and the greatest factor then; what counts at most of one that is held up, each time until
+# its foot touches: its leg may lie on an edge. Without contacts, the ground may stall it.
+_GIVES_WAY, _PUSHED, _MOST_GIVING_WAY, _RAISED = 0.6, 0.3, 30.0, 1.0
 # A joint whose command moves by so much within a time [rad], [s], and that moves by less than this share of it, is
 # stuck; it has failed once that is so twice in a row.
 _COMMANDED, _WITHIN, _SHARE, _ONCE = 0.15, 1.0, 0.4, 1.0
@@ -99,6 +100,8 @@ class ServoMonitor:
         self._evidence: Float[np.ndarray, "2 legs 3"] | None = None
         # Legs that have been found, and those whose feet touched as joints were last looked at.
         self._found, self._touched = set[int](), set[int]()
+        # Of legs whose femurs are held up: what has told against them, and their lowest angle [rad].
+        self._raised = dict[int, tuple[float, float]]()
         # What was measured and commanded, since joints were last looked at for whether they are stuck.
         self._compared: list[tuple[Float[np.ndarray, "legs 3"], Float[np.ndarray, "legs 3"]]] = []
         self._last: Float[np.ndarray, "legs 3"] | None = None
@@ -132,6 +135,7 @@ class ServoMonitor:
         touched, self._touched = self._touched, {leg for leg, touches in enumerate(valid.contacts or ()) if touches}
         # A foot that presses on moving ground loses touch for a moment, in which its servo is stalled as before.
         touching = touched | self._touched
+        raised_before, self._raised = self._raised, {}
         for leg in self._found - self.failed.keys():
             # It is to be used again: what has told against it does not count any more.
             assert self._evidence is not None  # what it was found by
@@ -154,10 +158,18 @@ class ServoMonitor:
             moves = (now - before) * math.copysign(1.0, asked - now) > _MOVES * dt
             torque = self._torque(valid, leg, joint)
             idle = torque < _IDLE and not moves
-            stalled = not idle and leg in touching
-            gives_way = joint == _FEMUR and over[leg, joint] > _GIVES_WAY and not stalled
-            weight = _weight(float(errors[leg, joint]), torque, idle=idle, gives_way=gives_way)
-            self._evidence[0, leg, joint] += dt * weight * (_STALLED if stalled else 1.0)
+            # Where neither torque nor touch tells, the ground may hold the femur up.
+            raised = math.isnan(torque) and joint == _FEMUR and over[leg, joint] > 0.0 and leg not in touching
+            counted, lowest = raised_before.get(leg, (0.0, now - over[leg, joint]))
+            gives_way = raised and over[leg, joint] > _GIVES_WAY and now - lowest > _PUSHED
+            unknown = not valid.contacts or valid.contacts[leg] is None
+            stalled = not idle and (leg in touching or (raised and unknown and not gives_way))
+            weight = _weight(float(errors[leg, joint]), torque, idle=idle, gives_way=gives_way and not unknown)
+            counts = dt * weight * (_STALLED if stalled else 1.0)
+            if raised:
+                counts = counts if gives_way or stalled else min(counts, _RAISED - counted)
+                self._raised[leg] = counted + counts, min(lowest, now)
+            self._evidence[0, leg, joint] += counts
         if stuck is not None:
             self._evidence[1] += _ONCE * stuck
         for _, leg, joint in np.argwhere(self._evidence > _FAILED_AFTER).tolist():
