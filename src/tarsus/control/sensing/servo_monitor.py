@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections import UserDict, deque
+from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -135,7 +136,7 @@ class ServoMonitor:
         touched, self._touched = self._touched, {leg for leg, touches in enumerate(valid.contacts or ()) if touches}
         # A foot that presses on moving ground loses touch for a moment, in which its servo is stalled as before.
         touching = touched | self._touched
-        raised_before, self._raised = self._raised, {}
+        raised, self._raised = self._raised, {}
         for leg in self._found - self.failed.keys():
             # It is to be used again: what has told against it does not count any more.
             assert self._evidence is not None  # what it was found by
@@ -155,26 +156,36 @@ class ServoMonitor:
         errors = np.maximum(over, under)
         for leg, joint in np.argwhere(errors > _IDLE_ERROR).tolist():
             now, before, asked = (float(angles[leg, joint]) for angles in (measured, last, commanded))
-            moves = (now - before) * math.copysign(1.0, asked - now) > _MOVES * dt
-            torque = self._torque(valid, leg, joint)
-            idle = torque < _IDLE and not moves
-            # Where neither torque nor touch tells, the ground may hold the femur up.
-            raised = math.isnan(torque) and joint == _FEMUR and over[leg, joint] > 0.0 and leg not in touching
-            counted, lowest = raised_before.get(leg, (0.0, now - over[leg, joint]))
-            gives_way = raised and over[leg, joint] > _GIVES_WAY and now - lowest > _PUSHED
-            unknown = not valid.contacts or valid.contacts[leg] is None
-            stalled = not idle and (leg in touching or (raised and unknown and not gives_way))
-            weight = _weight(float(errors[leg, joint]), torque, idle=idle, gives_way=gives_way and not unknown)
-            counts = dt * weight * (_STALLED if stalled else 1.0)
-            if raised:
-                counts = counts if gives_way or stalled else min(counts, _RAISED - counted)
-                self._raised[leg] = counted + counts, min(lowest, now)
+            error, torque = float(errors[leg, joint]), self._torque(valid, leg, joint)
+            if math.isnan(torque) and joint == _FEMUR and over[leg, joint] > 0.0 and leg not in touching:
+                known = valid.contacts is not None and valid.contacts[leg] is not None
+                counts = self._held_up(leg, now, error, dt, before=raised, known=known)
+            else:
+                moves = (now - before) * math.copysign(1.0, asked - now) > _MOVES * dt
+                idle = torque < _IDLE and not moves
+                counts = dt * _weight(error, torque, idle=idle)
+                counts *= _STALLED if leg in touching and not idle else 1.0
             self._evidence[0, leg, joint] += counts
         if stuck is not None:
             self._evidence[1] += _ONCE * stuck
         for _, leg, joint in np.argwhere(self._evidence > _FAILED_AFTER).tolist():
             self.failed.setdefault(leg, joint)
             self._found.add(leg)
+
+    def _held_up(
+        self, leg: int, angle: float, error: float, dt: float, *, before: Mapping[int, tuple[float, float]], known: bool
+    ) -> float:
+        """Return for how much an error of a femur counts that the ground may hold up; its touch may not be known."""
+        counted, lowest = before.get(leg, (0.0, angle - error))
+        gives_way = error > _GIVES_WAY and angle - lowest > _PUSHED
+        most = _MOST_GIVING_WAY if gives_way and known else _MOST_WEIGHT
+        counts = dt * _over(error, _ERROR, most=most)
+        if known and not gives_way:
+            counts = min(counts, _RAISED - counted)
+        elif not gives_way:
+            counts *= _STALLED
+        self._raised[leg] = counted + counts, min(lowest, angle)
+        return counts
 
     def _torque(self, valid: ValidReadings, leg: int, joint: int) -> float:
         """Return the measured torque of a joint over the stall torque of its servo; NaN where it is unknown."""
@@ -196,11 +207,13 @@ class ServoMonitor:
         return stuck if stuck.any() else None
 
 
-def _weight(error: float, torque: float, *, idle: bool, gives_way: bool) -> float:
+def _weight(error: float, torque: float, *, idle: bool) -> float:
     """Return for how much an error counts; the torque is relative to the stall torque, NaN where it is unknown."""
-    bound = _IDLE_ERROR if idle else _ERROR
-    if error <= bound:
-        return 0.0
-    unmeasured = _MOST_GIVING_WAY if gives_way else _MOST_WEIGHT
-    most = _MOST_IDLE if idle else _MOST_PULLING if torque >= 0.0 else unmeasured
-    return min((error / bound) ** 2, most)
+    if idle:
+        return _over(error, _IDLE_ERROR, most=_MOST_IDLE)
+    return _over(error, _ERROR, most=_MOST_PULLING if torque >= 0.0 else _MOST_WEIGHT)
+
+
+def _over(error: float, bound: float, *, most: float) -> float:
+    """Return the square of an error over its bound, up to a greatest one; 0 below the bound."""
+    return min((error / bound) ** 2, most) if error > bound else 0.0
