@@ -42,7 +42,7 @@ def test_joints_that_lag_and_give_way_have_not_failed(lag):
     assert monitor.failed == {}
 
 
-@pytest.mark.parametrize(("angle", "joint", "at_most"), [(-0.8, 1, 65), (0.3, 2, 150), (0.3, 1, 200)])
+@pytest.mark.parametrize(("angle", "joint", "at_most"), [(-0.8, 1, 65), (0.3, 2, 150), (0.3, 1, 201)])
 def test_a_joint_that_does_not_follow_is_found(angle, joint, at_most):
     monitor = ServoMonitor(UNKNOWN)
     for tick in range(400):
@@ -122,9 +122,9 @@ def test_a_servo_that_the_ground_may_stall_is_given_longer_than_one_whose_foot_d
     assert off == unknown == missing
 
 
-def test_a_femur_that_is_held_up_by_the_edge_its_leg_lies_on_has_not_failed_until_it_is_so_again():
+def test_a_femur_that_is_held_up_by_the_edge_its_leg_lies_on_has_not_failed_unless_it_is_so_again_and_again():
     assert ticks_until_failed(0.3, lambda _: [False] * 6) == 600
-    assert ticks_until_failed(0.3, lambda nth: [nth == 25] * 6) < 200
+    assert ticks_until_failed(0.3, lambda nth: [nth in (15, 30)] * 6) < 200
 
 
 def test_a_femur_that_is_held_up_is_taken_for_one_that_the_ground_stalls_where_no_contact_is_measured():

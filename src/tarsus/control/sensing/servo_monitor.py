@@ -40,7 +40,7 @@ _STALLED = 0.2
 # Where neither torque nor touch tells: error of a femur that the ground has pushed up, by the second [rad], more than
 # nearly any that holds on, and the greatest factor then; what counts at most of one that is held up, each time until
 # its foot touches: its leg may lie on an edge. Without contacts, the ground may stall it.
-_GIVES_WAY, _PUSHED, _MOST_GIVING_WAY, _RAISED = 0.6, 0.3, 30.0, 1.0
+_GIVES_WAY, _PUSHED, _MOST_GIVING_WAY, _RAISED = 0.6, 0.3, 30.0, 0.8
 # A joint whose command moves by so much within a time [rad], [s], and that moves by less than this share of it, is
 # stuck; it has failed once that is so twice in a row.
 _COMMANDED, _WITHIN, _SHARE, _ONCE = 0.15, 1.0, 0.4, 1.0
@@ -165,6 +165,8 @@ class ServoMonitor:
                 idle = torque < _IDLE and not moves
                 counts = dt * _weight(error, torque, idle=idle)
                 counts *= _STALLED if leg in touching and not idle else 1.0
+                if joint == _FEMUR:
+                    self._raised[leg] = 0.0, now
             self._evidence[0, leg, joint] += counts
         if stuck is not None:
             self._evidence[1] += _ONCE * stuck
