@@ -84,14 +84,6 @@ CASES: dict[str, Case] = {
     "blind": Case(sensors="blind"),
     "felt": Case(),
     "felt, ideal servos": Case(servos="ideal"),
-    "hobby sensors": Case(sensors="hobby"),
-    "estimated contacts": Case(sensors="smart"),
-    "50 ms late": Case(sensors=switches(delay=0.05)),
-    "1 % wrong": Case(sensors=switches(flips=0.01)),
-    "5 % wrong": Case(sensors=switches(flips=0.05)),
-    "1 deg noise": Case(
-        sensors=SensorSuite(contacts=FootSwitch(), attitude=Sensor(noise=math.radians(1), bias=math.radians(1)))
-    ),
     "without levelling": Case(options={"levelling": None}),
     "without adaptation": Case(options=NOT_ADAPTED),
     "without odometry": Case(sensors=switches()),

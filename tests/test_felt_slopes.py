@@ -3,11 +3,11 @@
 import dataclasses
 import math
 
-import mujoco
 import numpy as np
 import pytest
 
 import put_down
+from cross_slopes import Turned
 from gait_robots import preset
 from tarsus.control.limitation import LimitationKind
 from tarsus.control.limiter.protocol import TwistGrant, TwistRequest
@@ -285,26 +285,11 @@ def test_robots_that_stop_on_a_slope_stay_there(name, rises):
     assert abs(ways[-1] - ways[-300]) < 0.03
 
 
-class RampAside:
-    """Level ground with a ramp of 20 degrees 0.4 m to the left."""
-
-    friction = 0.8
-
-    def height(self, x, y):
-        return np.maximum(np.asarray(y) - 0.4, 0.0) * np.tan(np.pi / 9)
-
-    def add_to(self, spec):
-        attributes = {"contype": 1, "conaffinity": 0, "friction": (0.8, 0.005, 1e-4), "priority": 1}
-        kind, s, c = mujoco.mjtGeom.mjGEOM_BOX, np.sin(np.pi / 9), np.cos(np.pi / 9)
-        spec.worldbody.add_geom(type=kind, size=(2.0, 2.0, 0.25), pos=(0, 0, -0.25), **attributes)
-        place, turn = (0, 0.4 + 2 * c + 0.05 * s, 2 * s - 0.05 * c), (np.cos(np.pi / 18), np.sin(np.pi / 18), 0, 0)
-        spec.worldbody.add_geom(type=kind, size=(2.0, 2.0, 0.05), pos=place, quat=turn, **attributes)
-
-
 @pytest.mark.no_cover
 def test_a_robot_walks_sideways_up_a_slope_of_twenty_degrees():
     robot = preset("strider")
-    plant, controller = SimulatedPlant(robot, terrain=RampAside(), servos="catalogue"), RobotController(robot)
+    ground = Turned(terrain.Ramp(slope=np.radians(20), start=0.4), np.pi / 2)
+    plant, controller = SimulatedPlant(robot, terrain=ground, servos="catalogue"), RobotController(robot)
     plant.start(controller.output)
     tilts, speed = [], 0.6 * WalkController(robot).top_speed((0, 1, 0))
     for _ in range(round(1.0 / speed / 0.01)):

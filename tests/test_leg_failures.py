@@ -101,7 +101,7 @@ def test_a_femur_that_gives_way_under_the_robot_is_found_before_it_tips(joint, e
 
 
 def ticks_until_failed(error, contacts, most=600):
-    """Return after how many ticks the femur of a leg that is off by this error has failed; the last one if it has not."""
+    """Return after how many ticks the femur of a leg that is off by this error has failed; the most if it has not."""
     monitor, measured = ServoMonitor(UNKNOWN), np.zeros((6, 3))
     look(monitor, np.zeros((6, 3)), measured.tolist())
     measured[3, 1] = error
