@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+import leg_failures
 import tarsus
 from tarsus.control.readings import ValidReadings
 from tarsus.control.sensing.servo_monitor import ServoMonitor
@@ -125,6 +126,13 @@ def test_a_servo_that_the_ground_may_stall_is_given_longer_than_one_whose_foot_d
 def test_a_femur_that_is_held_up_by_the_edge_its_leg_lies_on_has_not_failed_unless_it_is_so_again_and_again():
     assert ticks_until_failed(0.3, lambda _: [False] * 6) == 600
     assert ticks_until_failed(0.3, lambda nth: [nth in (15, 30)] * 6) < 200
+
+
+@pytest.mark.no_cover
+@pytest.mark.parametrize(("name", "ground", "seed"), [("ch3r", "smooth100", 1002), ("makeyourpet", "blocks100", 1001)])
+def test_no_servo_that_works_is_called_failed_on_rough_ground_where_torques_are_not_measured(name, ground, seed):
+    suite = leg_failures.SUITES["switches and joint angles"]
+    assert not leg_failures.walk(leg_failures.Walk(name, suite, ground, seed)).others
 
 
 def test_a_femur_that_is_held_up_is_taken_for_one_that_the_ground_stalls_where_no_contact_is_measured():
