@@ -102,12 +102,17 @@ def ticks(robot: Robot, count: int, *, dt: float = DT, felt: bool = False) -> Fl
         for tick in range(count):
             if tick % COMMAND_INTERVAL == COMMAND_INTERVAL - 1:
                 command = next(command_stream)
-            contacts, angles = controller.contacts, controller.angles
-            readings = SensorReadings(contacts=contacts, attitude=(0.0, 0.0), joint_angles=angles) if felt else None
+            readings = executed(controller) if felt else None
             start = time.thread_time_ns()
             controller.step(command, dt, readings)
             times[tick] = (time.thread_time_ns() - start) * 1e-9
     return times
+
+
+def executed(controller: WalkController) -> SensorReadings:
+    """Return what a robot measures that is where its controller has it."""
+    roll, pitch, _ = np.asarray(controller.body.rpy).tolist()
+    return SensorReadings(contacts=controller.contacts, attitude=(roll, pitch), joint_angles=controller.angles)
 
 
 def tick_rows(robot: Robot) -> Iterator[Row]:

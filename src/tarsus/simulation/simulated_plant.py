@@ -207,7 +207,7 @@ class SimulatedPlant:
         self._time += dt
         steps = round(self._time / TIMESTEP) - self._steps
         self._advance(steps)
-        if steps:
+        if steps and self.sensors.angular_rates:
             self._measurement.turned(steps * TIMESTEP)
         return self._sampler.read(self._time, self._exact())
 
