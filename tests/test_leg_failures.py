@@ -101,11 +101,11 @@ def test_a_femur_that_gives_way_under_the_robot_is_found_before_it_tips(joint, e
     assert 0.5 * at_most < ticks < at_most + 10
 
 
-def ticks_until_failed(error, contacts, most=600):
-    """Return after how many ticks the femur of a leg that is off by this error has failed; the most if it has not."""
+def ticks_until_failed(error, contacts, joint=1, most=600):
+    """Return after how many ticks a joint that is off by this error has failed, the femur; the most if it has not."""
     monitor, measured = ServoMonitor(UNKNOWN), np.zeros((6, 3))
     look(monitor, np.zeros((6, 3)), measured.tolist())
-    measured[3, 1] = error
+    measured[3, joint] = error
     for tick in range(most):
         # Joints are looked at every fourth tick.
         look(monitor, np.zeros((6, 3)), measured.tolist(), contacts=contacts(tick // 4))
@@ -138,6 +138,14 @@ def test_no_servo_that_works_is_called_failed_on_rough_ground_where_torques_are_
 def test_a_femur_that_is_held_up_is_taken_for_one_that_the_ground_stalls_where_no_contact_is_measured():
     stalled = ticks_until_failed(0.4, lambda _: [True] * 6)
     assert stalled == ticks_until_failed(0.4, lambda _: None) == ticks_until_failed(0.4, lambda _: [None] * 6) > 100
+
+
+@pytest.mark.parametrize("joint", [0, 2])
+def test_a_coxa_or_tibia_counts_half_where_no_contact_is_measured(joint):
+    off, missing = (
+        ticks_until_failed(0.3, lambda _, contacts=contacts: contacts, joint) for contacts in ([False] * 6, None)
+    )
+    assert off == pytest.approx(missing / 2, rel=0.2)
 
 
 def test_a_femur_that_the_ground_pushes_far_up_with_its_foot_on_it_is_stalled_even_if_touch_is_lost_for_a_moment():

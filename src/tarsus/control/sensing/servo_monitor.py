@@ -37,6 +37,8 @@ _MOST_WEIGHT, _MOST_IDLE, _MOST_PULLING = 6.0, 15.0, 1.0
 _FEMUR = 1
 # Share that counts where the foot touches the ground, which may stall the servo, unless its torque tells that it idles.
 _STALLED = 0.2
+# The same of a coxa or tibia where neither torque nor touch is known.
+_MAY_BE_STALLED = 0.5
 # Where neither torque nor touch tells: error of a femur that the ground has pushed up, by the second [rad], more than
 # nearly any that holds on, and the greatest factor then; what counts at most of one that is held up, each time until
 # its foot touches: its leg may lie on an edge. Without contacts, the ground may stall it.
@@ -157,16 +159,13 @@ class ServoMonitor:
         for leg, joint in np.argwhere(errors > _IDLE_ERROR).tolist():
             now, before, asked = (float(angles[leg, joint]) for angles in (measured, last, commanded))
             error, torque = float(errors[leg, joint]), self._torque(valid, leg, joint)
-            if math.isnan(torque) and joint == _FEMUR and over[leg, joint] > 0.0 and leg not in touching:
-                known = valid.contacts is not None and valid.contacts[leg] is not None
-                counts = self._held_up(leg, now, error, dt, before=raised, known=known)
+            touches = leg in touching or (False if valid.contacts and valid.contacts[leg] is not None else None)
+            if math.isnan(torque):
+                held = joint == _FEMUR and over[leg, joint] > 0.0
+                counts = self._untold(leg, joint, now, error, dt, touches=touches, held=raised if held else None)
             else:
                 moves = (now - before) * math.copysign(1.0, asked - now) > _MOVES * dt
-                idle = torque < _IDLE and not moves
-                counts = dt * _weight(error, torque, idle=idle)
-                counts *= _STALLED if leg in touching and not idle else 1.0
-                if joint == _FEMUR:
-                    self._raised[leg] = 0.0, now
+                counts = dt * _weight(error, idle=torque < _IDLE and not moves, touches=bool(touches))
             self._evidence[0, leg, joint] += counts
         if stuck is not None:
             self._evidence[1] += _ONCE * stuck
@@ -174,18 +173,28 @@ class ServoMonitor:
             self.failed.setdefault(leg, joint)
             self._found.add(leg)
 
-    def _held_up(
-        self, leg: int, angle: float, error: float, dt: float, *, before: Mapping[int, tuple[float, float]], known: bool
+    def _untold(
+        self,
+        leg: int,
+        joint: int,
+        angle: float,
+        error: float,
+        dt: float,
+        *,
+        touches: bool | None,
+        held: Mapping[int, tuple[float, float]] | None,
     ) -> float:
-        """Return for how much an error of a femur counts that the ground may hold up; its touch may not be known."""
-        counted, lowest = before.get(leg, (0.0, angle - error))
-        gives_way = error > _GIVES_WAY and angle - lowest > _PUSHED
-        most = _MOST_GIVING_WAY if gives_way and known else _MOST_WEIGHT
-        counts = dt * _over(error, _ERROR, most=most)
-        if known and not gives_way:
-            counts = min(counts, _RAISED - counted)
-        elif not gives_way:
-            counts *= _STALLED
+        """Return for how much an error counts where no torque tells, and maybe no touch; the ground may hold femurs."""
+        share = _STALLED if touches else _MAY_BE_STALLED if touches is None and joint != _FEMUR else 1.0
+        if held is None or touches:
+            if joint == _FEMUR:
+                self._raised[leg] = 0.0, angle
+            return dt * share * _over(error, _ERROR, most=_MOST_WEIGHT)
+        counted, lowest = held.get(leg, (0.0, angle - error))
+        gives_way, known = error > _GIVES_WAY and angle - lowest > _PUSHED, touches is not None
+        counts = dt * _over(error, _ERROR, most=_MOST_GIVING_WAY if gives_way and known else _MOST_WEIGHT)
+        if not gives_way:
+            counts = min(counts, _RAISED - counted) if known else _STALLED * counts
         self._raised[leg] = counted + counts, min(lowest, angle)
         return counts
 
@@ -209,11 +218,11 @@ class ServoMonitor:
         return stuck if stuck.any() else None
 
 
-def _weight(error: float, torque: float, *, idle: bool) -> float:
-    """Return for how much an error counts; the torque is relative to the stall torque, NaN where it is unknown."""
+def _weight(error: float, *, idle: bool, touches: bool) -> float:
+    """Return for how much an error counts of a servo that idles or pulls; the ground may stall one."""
     if idle:
         return _over(error, _IDLE_ERROR, most=_MOST_IDLE)
-    return _over(error, _ERROR, most=_MOST_PULLING if torque >= 0.0 else _MOST_WEIGHT)
+    return (_STALLED if touches else 1.0) * _over(error, _ERROR, most=_MOST_PULLING)
 
 
 def _over(error: float, bound: float, *, most: float) -> float:
