@@ -16,11 +16,11 @@ import numpy as np
 
 import tarsus
 from page_tables import Several, measured, write_tables
-from rough_ground import GROUNDS, PAGE, WAY
+from rough_ground import GROUNDS, PAGE, ROBOTS, WAY
+from tarsus.robot.robot import JOINTS
 from tarsus.simulation import SensorSuite, SimulatedPlant
 
 DT, FAILURE_AT, FAILURE_TIME = 0.01, 2.0, 15.0
-JOINTS = ("coxa", "femur", "tibia")
 FAILURES = [(1, 1, "limp"), (0, 1, "limp"), (2, 1, "limp"), (1, 1, "stuck"), (0, 0, "stuck"), (0, 2, "limp")]
 # What is found where torques are not measured: of servos that go limp, each at these times [s] and within another, and
 # of those that work, on the ground on which legs are caught most.
@@ -129,4 +129,4 @@ def tables(asked: argparse.Namespace) -> dict[str, str]:
 
 
 if __name__ == "__main__":
-    write_tables(__doc__, PAGE, tables, robots=Several(["strider", "phantomx", "makeyourpet"]), seeds=3, jobs=1)
+    write_tables(__doc__, PAGE, tables, robots=Several(ROBOTS), seeds=3, jobs=1)

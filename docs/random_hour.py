@@ -16,6 +16,7 @@ import numpy as np
 
 import tarsus
 from estimated_contacts import JOINTS
+from leg_failures import break_servo
 from page_tables import measured, write_tables
 from rough_ground import CLEAR, LIES, PAGE, ROBOTS, switches
 from sensor_faults import LATE, ONE_DEGREE, with_sensors
@@ -189,9 +190,7 @@ def _lived(minute: Minute) -> Outcome:
                 plant.mj_data.xfrc_applied[1, :2] = PUSH * weight * np.array([math.cos(direction), math.sin(direction)])
         if minute.servo and time >= minute.servo[0]:
             _, leg, joint = minute.servo
-            drives = len(plant.mj_model.actuator_gainprm) // (3 * robot.legs)
-            number = slice(drives * (3 * leg + joint), drives * (3 * leg + joint + 1))
-            plant.mj_model.actuator_gainprm[number] = plant.mj_model.actuator_biasprm[number] = 0.0
+            break_servo(plant, 3 * leg + joint, limp=True)
         readings = plant.step(output, DT)
         if minute.stuck_switch:
             contacts = np.array(readings.contacts)

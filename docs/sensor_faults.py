@@ -16,7 +16,7 @@ import numpy as np
 
 import tarsus
 from page_tables import Several, measured, write_tables
-from rough_ground import GROUNDS, PAGE, RANDOM, WAY
+from rough_ground import GROUNDS, PAGE, RANDOM, ROBOTS, WAY
 from tarsus.simulation import SensorSuite, SimulatedPlant
 from tarsus.simulation.sensors.suite import FootSwitch, Sensor
 
@@ -115,6 +115,4 @@ def tables(asked: argparse.Namespace) -> dict[str, str]:
 
 if __name__ == "__main__":
     faults = Several(FAULTS, choices=FAULTS)
-    write_tables(
-        __doc__, PAGE, tables, robots=Several(["strider", "phantomx", "makeyourpet"]), faults=faults, seeds=3, jobs=1
-    )
+    write_tables(__doc__, PAGE, tables, robots=Several(ROBOTS), faults=faults, seeds=3, jobs=1)

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections import UserDict, deque
-from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -103,8 +102,7 @@ class ServoMonitor:
         self._evidence: Float[np.ndarray, "2 legs 3"] | None = None
         # Legs that have been found, and those whose feet touched as joints were last looked at.
         self._found, self._touched = set[int](), set[int]()
-        # Of legs whose femurs are held up: what has told against them, and their lowest angle [rad].
-        self._raised = dict[int, tuple[float, float]]()
+        self._femurs = _Femurs()
         # What was measured and commanded, since joints were last looked at for whether they are stuck.
         self._compared: list[tuple[Float[np.ndarray, "legs 3"], Float[np.ndarray, "legs 3"]]] = []
         self._last: Float[np.ndarray, "legs 3"] | None = None
@@ -138,7 +136,7 @@ class ServoMonitor:
         touched, self._touched = self._touched, {leg for leg, touches in enumerate(valid.contacts or ()) if touches}
         # A foot that presses on moving ground loses touch for a moment, in which its servo is stalled as before.
         touching = touched | self._touched
-        raised, self._raised = self._raised, {}
+        self._femurs.look()
         for leg in self._found - self.failed.keys():
             # It is to be used again: what has told against it does not count any more.
             assert self._evidence is not None  # what it was found by
@@ -160,43 +158,20 @@ class ServoMonitor:
             now, before, asked = (float(angles[leg, joint]) for angles in (measured, last, commanded))
             error, torque = float(errors[leg, joint]), self._torque(valid, leg, joint)
             touches = leg in touching or (False if valid.contacts and valid.contacts[leg] is not None else None)
-            if math.isnan(torque):
-                held = joint == _FEMUR and over[leg, joint] > 0.0
-                counts = self._untold(leg, joint, now, error, dt, touches=touches, held=raised if held else None)
-            else:
+            if not math.isnan(torque):
                 moves = (now - before) * math.copysign(1.0, asked - now) > _MOVES * dt
                 counts = dt * _weight(error, idle=torque < _IDLE and not moves, touches=bool(touches))
+            elif joint == _FEMUR:
+                counts = self._femurs.counts(leg, now, error, dt, up=bool(over[leg, joint] > 0.0), touches=touches)
+            else:
+                share = _MAY_BE_STALLED if touches is None else _STALLED if touches else 1.0
+                counts = dt * share * _over(error, _ERROR, most=_MOST_WEIGHT)
             self._evidence[0, leg, joint] += counts
         if stuck is not None:
             self._evidence[1] += _ONCE * stuck
         for _, leg, joint in np.argwhere(self._evidence > _FAILED_AFTER).tolist():
             self.failed.setdefault(leg, joint)
             self._found.add(leg)
-
-    def _untold(
-        self,
-        leg: int,
-        joint: int,
-        angle: float,
-        error: float,
-        dt: float,
-        *,
-        touches: bool | None,
-        held: Mapping[int, tuple[float, float]] | None,
-    ) -> float:
-        """Return for how much an error counts where no torque tells, and maybe no touch; the ground may hold femurs."""
-        share = _STALLED if touches else _MAY_BE_STALLED if touches is None and joint != _FEMUR else 1.0
-        if held is None or touches:
-            if joint == _FEMUR:
-                self._raised[leg] = 0.0, angle
-            return dt * share * _over(error, _ERROR, most=_MOST_WEIGHT)
-        counted, lowest = held.get(leg, (0.0, angle - error))
-        gives_way, known = error > _GIVES_WAY and angle - lowest > _PUSHED, touches is not None
-        counts = dt * _over(error, _ERROR, most=_MOST_GIVING_WAY if gives_way and known else _MOST_WEIGHT)
-        if not gives_way:
-            counts = min(counts, _RAISED - counted) if known else _STALLED * counts
-        self._raised[leg] = counted + counts, min(lowest, angle)
-        return counts
 
     def _torque(self, valid: ValidReadings, leg: int, joint: int) -> float:
         """Return the measured torque of a joint over the stall torque of its servo; NaN where it is unknown."""
@@ -216,6 +191,32 @@ class ServoMonitor:
         with np.errstate(invalid="ignore"):
             stuck: np.ndarray = (wanted > _COMMANDED) & (moved < _SHARE * wanted)
         return stuck if stuck.any() else None
+
+
+class _Femurs:
+    """What errors of femurs count for whose torque is not measured: the ground may hold them up, at the foot or not."""
+
+    def __init__(self) -> None:
+        # At the last look and at this one, of those that are off: what has counted since a foot touched or the femur
+        # was not held up, and its lowest angle since [rad].
+        self._last, self._now = dict[int, tuple[float, float]](), dict[int, tuple[float, float]]()
+
+    def look(self) -> None:
+        """Begin another look."""
+        self._last, self._now = self._now, {}
+
+    def counts(self, leg: int, angle: float, error: float, dt: float, *, up: bool, touches: bool | None) -> float:
+        """Return for how much an error counts, upwards or not; whether the foot touches may be unknown."""
+        if touches or not up:
+            self._now[leg] = 0.0, angle
+            return dt * (_STALLED if touches else 1.0) * _over(error, _ERROR, most=_MOST_WEIGHT)
+        counted, lowest = self._last.get(leg, (0.0, angle - error))
+        gives_way, known = error > _GIVES_WAY and angle - lowest > _PUSHED, touches is not None
+        counts = dt * _over(error, _ERROR, most=_MOST_GIVING_WAY if gives_way and known else _MOST_WEIGHT)
+        if not gives_way:
+            counts = min(counts, _RAISED - counted) if known else _STALLED * counts
+        self._now[leg] = counted + counts, min(lowest, angle)
+        return counts
 
 
 def _weight(error: float, *, idle: bool, touches: bool) -> float:

@@ -120,19 +120,24 @@ class Roughness:
         self._lasting = min(rising, self.value)
 
     @property
+    def _or_edge(self) -> float:
+        """The roughness, or what stands for it beside an edge, where only heights and footholds adapt [m]."""
+        return max(self.value, self._edge)
+
+    @property
     def swing_rise(self) -> float:
         """Addition to the swing height [m]."""
-        return min(max(self.value, self._edge), self._scale * self.adaptation.swing_height)
+        return min(self._or_edge, self._scale * self.adaptation.swing_height)
 
     @property
     def body_rise(self) -> float:
         """Addition to the body height [m]."""
-        return min(max(self.value, self._edge), self._scale * self.adaptation.body_height)
+        return min(self._or_edge, self._scale * self.adaptation.body_height)
 
     @property
     def drawn_in(self) -> float:
         """How far feet are drawn in [m]."""
-        return self._share(max(self.value, self._edge), 0.0, _ROUGH) * self._scale * self.adaptation.drawn_in
+        return self._share(self._or_edge, 0.0, _ROUGH) * self._scale * self.adaptation.drawn_in
 
     @property
     def deeper(self) -> float:
