@@ -10,6 +10,8 @@ import argparse
 import dataclasses
 import itertools
 import math
+from collections.abc import Callable
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -17,6 +19,7 @@ import numpy as np
 import tarsus
 from page_tables import Several, measured, write_tables
 from rough_ground import GROUNDS, PAGE, RANDOM, ROBOTS, WAY
+from tarsus import SensorReadings
 from tarsus.simulation import SensorSuite, SimulatedPlant
 from tarsus.simulation.sensors.suite import FootSwitch, Sensor
 
@@ -30,6 +33,7 @@ def with_sensors(**sensors: Any) -> SensorSuite:
 
 
 LATE = with_sensors(contacts=FootSwitch(delay=0.05), attitude=Sensor(delay=0.05), joint_angles=Sensor(delay=0.05))
+CONTINUOUS = ("attitude", "angular_rates", "joint_angles", "torques")
 ONE_DEGREE = Sensor(noise=math.radians(1), bias=math.radians(1))
 SUITES: dict[str, Any] = {
     "hobby sensors": "hobby",
@@ -38,41 +42,87 @@ SUITES: dict[str, Any] = {
     "5 % of contacts wrong": with_sensors(contacts=FootSwitch(flips=0.05)),
     "attitude with 1 deg of noise and bias": with_sensors(attitude=ONE_DEGREE),
 }
-# The switch that is stuck, what it reads, and from when on [s]; a name with a comma begins with that of the sensors.
-STUCK: dict[str, tuple[int, bool, float]] = {
-    "switch of the front left foot open": (0, False, 0.0),
-    "switch of the middle left foot open": (1, False, 0.0),
-    "switch of the front left foot open after 3 s": (0, False, 3.0),
-    "switch of the front left foot closed": (0, True, 0.0),
-    "switch of the middle left foot closed after 3 s": (1, True, 3.0),
-    "50 ms late, switch of the front left foot open": (0, False, 0.0),
-    "50 ms late, switch of the middle right foot open": (4, False, 0.0),
+LOST = {"contacts": FootSwitch(dropout=0.3), **{name: Sensor(dropout=0.3) for name in CONTINUOUS}}
+SUITES |= {
+    "30 % of readings lost and the last given again": with_sensors(**LOST),
+    "joint angles measured 16 times a second": with_sensors(joint_angles=Sensor(rate=16)),
+}
+
+
+class Stuck:
+    """A switch that is stuck from a time on [s]."""
+
+    def __init__(self, leg: int, closed: bool, since: float = 0.0) -> None:
+        self.leg, self.closed, self.since = leg, closed, since
+
+    def __call__(self, readings: SensorReadings, time: float) -> SensorReadings:
+        """Return what is read."""
+        if time < self.since:
+            return readings
+        contacts = np.array(readings.contacts)
+        contacts[self.leg] = self.closed
+        return dataclasses.replace(readings, contacts=contacts)
+
+
+class InTurn:
+    """Servos that are asked leg by leg, one in each tick; the angles of the others are those of before."""
+
+    def __init__(self) -> None:
+        self.angles, self.times, self.leg = np.zeros((6, 3)), np.full((6, 3), -math.inf), 0
+
+    def __call__(self, readings: SensorReadings, time: float) -> SensorReadings:
+        """Return what is read."""
+        asked = [self.leg] if np.isfinite(self.times).all() else slice(None)
+        self.angles[asked], self.times[asked], self.leg = readings.joint_angles[asked], time, (self.leg + 1) % 6
+        ages = {"joint_angles": time - self.times}
+        return dataclasses.replace(readings, joint_angles=self.angles.copy(), age=ages)
+
+
+class Missing:
+    """Channels of which 30 % of the readings are missing."""
+
+    def __init__(self) -> None:
+        self.random = np.random.default_rng(0)
+
+    def __call__(self, readings: SensorReadings, time: float) -> SensorReadings:  # noqa: ARG002 - as the others
+        """Return what is read."""
+        lost = [name for name in ("contacts", *CONTINUOUS) if self.random.random() < 0.3]
+        return dataclasses.replace(readings, **dict.fromkeys(lost))
+
+
+# What is wrong with readings; a name with a comma begins with that of the sensors.
+CHANGES: dict[str, Callable[[], Callable[[SensorReadings, float], SensorReadings]]] = {
+    "30 % of readings missing": Missing,
+    "joint angles of one leg in each tick": InTurn,
+    "switch of the front left foot open": partial(Stuck, 0, False),
+    "switch of the middle left foot open": partial(Stuck, 1, False),
+    "switch of the front left foot open after 3 s": partial(Stuck, 0, False, 3.0),
+    "switch of the front left foot closed": partial(Stuck, 0, True),
+    "switch of the middle left foot closed after 3 s": partial(Stuck, 1, True, 3.0),
+    "50 ms late, switch of the front left foot open": partial(Stuck, 0, False),
+    "50 ms late, switch of the middle right foot open": partial(Stuck, 4, False),
 }
 LAG = "50 ms of servo lag"
-FAULTS = ("none", *SUITES, LAG, *STUCK)
+FAULTS = ("none", *SUITES, LAG, *CHANGES)
 
 
-def walk(name: str, ground: str, fault: str, seed: int) -> tuple[float, float]:
+def walk(name: str, ground: str, fault: str, seed: int, *, servos: Any = "catalogue") -> tuple[float, float]:
     """Return the way of one walk at half the top speed, over the commanded one, and the RMS of its tilt [deg]."""
     robot = tarsus.load_robot(name)
     speed, dt = 0.5 * tarsus.WalkController(robot).top_speed((1, 0, 0)), 0.01
     sensors = SUITES.get(fault.partition(",")[0], IDEAL)
     setup: dict[str, Any] = {"terrain": GROUNDS[ground](seed), "sensors": sensors, "seed": seed}
-    plant = SimulatedPlant(robot, **setup)
+    plant = SimulatedPlant(robot, servos=servos, **setup)
     if fault == LAG:
-        servos = [[dataclasses.replace(each, delay=each.delay + 0.05) for each in row] for row in plant.servos]
-        plant = SimulatedPlant(robot, servos=servos, **setup)
+        late = [[dataclasses.replace(each, delay=each.delay + 0.05) for each in row] for row in plant.servos]
+        plant = SimulatedPlant(robot, servos=late, **setup)
     controller = tarsus.RobotController(robot)
     output = controller.output
     plant.start(output)
     start, tilts, ticks = plant.state.body.position[0], [], round(WAY / speed / dt)
-    leg, value, since = STUCK.get(fault, (0, False, math.inf))
+    change = CHANGES[fault]() if fault in CHANGES else lambda readings, _: readings
     for tick in range(ticks):
-        readings = plant.step(output, dt)
-        if tick * dt >= since:
-            contacts = np.array(readings.contacts)
-            contacts[leg] = value
-            readings = dataclasses.replace(readings, contacts=contacts)
+        readings = change(plant.step(output, dt), tick * dt)
         tilts.append(math.hypot(*np.asarray(plant.state.body.rpy).tolist()[:2]))
         output = controller.step((speed, 0.0, 0.0), dt, readings)
     way = float(plant.state.body.position[0] - start)

@@ -417,6 +417,19 @@ def test_contacts_come_from_switches_or_else_from_load_cells():
     assert loads.contacts(ValidReadings(), angles, state, 0.01) is None
 
 
+def test_joint_angles_tell_of_contacts_once_switches_have_told_nothing_for_some_time(monkeypatch):
+    loads, controller, told = FootLoads(STRIDER, None), WalkController(STRIDER), []
+    angles, state = controller.angles, controller._tick.gait
+    monkeypatch.setattr(loads._joints, "contacts", lambda *_: [False] * 6)
+    switched = ValidReadings(joint_angles=tuple(map(tuple, angles.tolist())), contacts=(True,) * 6)
+    for tick in range(40):
+        told.append(loads.contacts(switched if tick < 5 else switched._replace(contacts=None), angles, state, 0.01))
+        assert loads.estimated == (told[-1] == [False] * 6)
+    assert told == [(True,) * 6] * 5 + [None] * 15 + [[False] * 6] * 20
+    # Without any switches they do at once.
+    assert FootLoads(STRIDER, None)._untold == math.inf
+
+
 def test_compliant_feet_yield_to_measured_forces_or_else_to_joint_torques():
     controller = WalkController(STRIDER)
     angles, state = controller.angles, controller._tick.gait

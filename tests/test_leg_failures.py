@@ -421,6 +421,19 @@ def test_legs_that_fail_in_the_middle_of_a_step_let_the_robot_sit_down_smoothly(
     assert (np.abs(np.diff(found, 2, axis=0)).max(axis=0) / 0.01**2 < bounds.acceleration).all()
 
 
+def test_the_legs_that_are_left_keep_the_ages_of_their_joints():
+    controller, ages = tarsus.RobotController(STRIDER), np.arange(18.0).reshape(6, 3) / 1e3
+    controller.leg_failures.failed[1] = 1
+    for tick in range(300):
+        more = {"age": {"joint_angles": ages, "attitude": 0.01}} if tick % 2 else {"age": 0.0}
+        readings = tarsus.SensorReadings(joint_angles=controller.output.angles, attitude=(0.0, 0.0), **more)
+        output = controller.step((0.0, 0.0, 0.0), 0.01, readings)
+    assert not [each for each in output.limitations if each.kind == "readings"]
+    left = controller._activity.controller.measured
+    assert left.joint_ages == tuple(tuple(ages[leg].tolist()) for leg in (0, 2, 3, 4, 5))
+    assert left.joint_age == 0.017
+
+
 @pytest.mark.parametrize("room", [0.0, 0.0005, 0.01, 0.5])
 def test_joints_that_move_stop_before_their_limits_when_a_leg_is_taken_out(room):
     robot, dt = tarsus.load_robot("phantomx"), 0.005

@@ -8,6 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+import tarsus
 from sample_robots import hexapod
 from tarsus import load_robot
 from tarsus.control.readings import CHANNELS, SensorReadings, ValidReadings
@@ -295,6 +296,39 @@ def test_each_channel_may_have_its_own_age():
     assert validated(validator, **PLAUSIBLE, age={}) == validated(**PLAUSIBLE)
     found = validated(validator, **PLAUSIBLE, age={"attitude": -1.0, "contacts": "old"})
     assert set(found.rejected) == {f"{name}: age is not a number >= 0 s" for name in ("attitude", "contacts")}
+
+
+def test_each_joint_may_have_its_own_age():
+    angles, ages = tarsus.WalkController(STRIDER).angles, np.full((6, 3), 0.02)
+    known = tuple(map(tuple, angles.tolist()))
+    ages[3, 1] = 0.07
+    found = validated(joint_angles=angles, age={"joint_angles": ages})
+    assert (found.joint_angles, found.rejected) == (known, ())
+    assert (found.joint_ages, found.joint_age, found.contact_age) == (tuple(map(tuple, ages.tolist())), 0.07, 0.07)
+    # A leg with a joint that is too old, or of no age, is unknown, and known again at once.
+    validator = ReadingsValidator(STRIDER)
+    for age, reason in ((0.11, "older than 100 ms"), (math.nan, "age is not"), (-1.0, "age is not"), ("old", "age is")):
+        ages = [[0.05] * 3, [0.0, age, 0.0], *[[0.0] * 3] * 4]
+        found = validated(validator, joint_angles=angles, contacts=[True] * 6, age={"joint_angles": ages})
+        assert found.joint_angles == (known[0], None, *known[2:])
+        assert found.rejected[0].startswith(f"joint_angles of {LEGS[1]}: {reason}")
+        assert (len(found.rejected), found.joint_age, found.contact_age) == (1, 0.05, 0.0)
+    found = validated(validator, joint_angles=angles, age={"joint_angles": np.zeros((6, 3))})
+    assert (found.joint_angles, found.rejected) == (known, ())
+    found = validated(validator, joint_angles=angles, age={"joint_angles": np.full((6, 3), 9.0)})
+    assert found.joint_angles is None
+    assert len(found.rejected) == 6
+
+
+def test_of_other_channels_the_oldest_joint_counts():
+    ages = np.zeros((6, 3))
+    ages[2, 2] = 0.2
+    found = validated(**PLAUSIBLE, age={"torques": ages, "forces": np.full((6, 3), 0.05)})
+    assert found.rejected == ("torques: older than 100 ms",)
+    assert found.forces is not None
+    assert validated(torques=PLAUSIBLE["torques"], age={"torques": ages[:5]}).rejected == (
+        "torques: age is not a number >= 0 s",
+    )
 
 
 class HostileMapping(dict):

@@ -463,7 +463,8 @@ def test_readings_have_what_every_servo_told():
         readings = rig.plant.step(rig.controller.output, 0.01)
     for channel in ("joint_angles", "joint_speeds", "temperatures", "voltages", "currents"):
         assert getattr(readings, channel).shape == (6, 3)
-    assert readings.age["joint_angles"] < 0.005
+    assert readings.age["joint_angles"].shape == (6, 3)
+    assert readings.age["joint_angles"].max() < 0.005
     assert rig.plant.greatest_rate > 200
     rig.plant.stop()
 

@@ -82,6 +82,19 @@ def test_feet_that_stand_and_joints_that_are_not_measured_tell_nothing():
         assert monitor.step(commanded, ValidReadings(joint_angles=(None,) * 6), DT, AIR) == []
 
 
+def test_only_joints_that_have_been_measured_tell_of_a_stop():
+    monitor, found = SwingMonitor(), dict[int, float]()
+    for tick in range(400):
+        time = tick * DT
+        stopped = swung(min(time, 3.2) - 0.02)
+        valid = ValidReadings(joint_angles=((stopped, 0.0, 0.0),) * 6, predicted=frozenset(range(6)) - {tick % 6})
+        for leg in monitor.step([swung(time)] * 6, valid, DT, AIR):
+            assert leg == tick % 6
+            found.setdefault(leg, time)
+    assert set(found) == set(range(6))
+    assert all(3.2 < time <= 3.2 + 0.03 + 6 * DT for time in found.values())
+
+
 def test_a_soft_servo_that_swings_about_its_command_is_not_stopped():
     # Inertia and a spring: it overshoots by a tenth of the way, and comes back.
     monitor, angle, speed, sent = SwingMonitor(), 0.0, 0.0, deque([0.0] * 3, maxlen=3)

@@ -48,9 +48,9 @@ class SensorReadings:
         Angular velocity of B in the world, mean over the tick, components along B's axes [rad/s].
     ground : GroundHeights or None
         Heights of the ground around the body.
-    age : float or mapping of str to float
+    age : float or mapping of str to (float or array of shape (legs, 3))
         Time since the measurement [s]: of all channels, or of each by its name; channels not in the mapping have
-        age 0.
+        age 0. Where servos are asked in turn, that of `joint_angles` may be one for each joint.
     """
 
     joint_angles: Any = None
@@ -64,7 +64,7 @@ class SensorReadings:
     attitude: Any = None
     angular_rates: Any = None
     ground: Any = None
-    age: float | Mapping[str, float] = 0.0
+    age: float | Mapping[str, Any] = 0.0
 
     @property
     def has_ground_feedback(self) -> bool:
@@ -93,10 +93,16 @@ class ValidReadings(NamedTuple):
         Angular velocity of B in the world, components along B's axes [rad/s].
     ground : GroundHeights or None
         Heights of the ground around the body.
+    joint_age : float
+        Time since the measurement of the joint angles, or of the oldest [s].
+    joint_ages : tuple of (three floats), or None
+        Where they differ, the same of the joints of each leg [s].
     ground_age : float
-        Time since their measurement [s].
+        Time since the measurement of the heights [s].
     contact_age : float
         Time since the measurement of contacts, or else of forces, or else of joint angles [s].
+    predicted : frozenset of int
+        Legs whose coxa angle has not been measured in this tick.
     rejected : tuple of str
         Rejected channels, or legs of them, with the reason.
     """
@@ -112,6 +118,9 @@ class ValidReadings(NamedTuple):
     attitude: RollPitch | None = None
     angular_rates: Vector | None = None
     ground: GroundHeights | None = None
+    joint_age: float = 0.0
+    joint_ages: tuple[Vector, ...] | None = None
     ground_age: float = 0.0
     contact_age: float = 0.0
+    predicted: frozenset[int] = frozenset()
     rejected: tuple[str, ...] = ()

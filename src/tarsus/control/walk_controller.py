@@ -249,7 +249,7 @@ class WalkController:
     @property
     def measured(self) -> ValidReadings:
         """The readings that were used last."""
-        return self._walk.ground.measured
+        return self._walk.ground.readings.valid
 
     @property
     def angles(self) -> Float[np.ndarray, "legs 3"]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
@@ -22,6 +23,8 @@ __all__ = ["FootLoads"]
 
 # A foot that bears this share of the robot's weight is on the ground.
 _CONTACT_SHARE = 0.04
+# Joint angles tell of contacts once nothing else has for so long [s].
+_UNTOLD = 0.15
 # Greatest speed of feet that go down; where contacts are estimated, feet press on the ground before they are known to
 # touch it [m/s].
 _DESCENT, _ESTIMATED_DESCENT = 0.4, 0.25
@@ -47,7 +50,7 @@ class FootLoads:
         self._weight = known_weight(robot)
         self._torques = FootForceEstimator(robot) if robot.has_masses else None
         self._joints = JointContacts(robot) if robot.has_masses and all(map(all, robot.servos)) else None
-        self.estimated = False
+        self.estimated, self._untold = False, math.inf
         self._filter = AdmittanceFilter(admittance, robot.legs) if admittance else None
 
     @property
@@ -76,13 +79,15 @@ class FootLoads:
         state, dt : GaitState, float
             The gait state; time since the last tick [s].
         """
-        self.estimated, found = False, None
+        self.estimated, found, untold = False, None, self._untold + dt
+        self._untold = 0.0
         if valid.contacts is not None:
             return valid.contacts
         if valid.forces is not None and self._weight:
             least = _CONTACT_SHARE * self._weight
             return [None if force is None else force[2] > least for force in valid.forces]
-        if valid.joint_angles is not None and self._joints is not None:
+        self._untold = untold
+        if valid.joint_angles is not None and self._joints is not None and untold > _UNTOLD:
             found = self._joints.contacts(valid, angles, state, dt)
             self.estimated = found is not None
         return found

@@ -111,7 +111,7 @@ class JointContacts:
         """
         self._follow(angles[:, 1].tolist(), dt)
         legs = [leg for leg in valid.joint_angles or () if leg is not None]
-        late = (self.lag + valid.contact_age) / self._step
+        late = (self.lag + valid.joint_age) / self._step
         recent = max(int(late), 0) + 1
         if recent >= len(self._expected) or len(legs) < len(self._stiffness):
             return None

@@ -56,8 +56,10 @@ class SwingMonitor:
             return stopped
         lag, usual, held = self._lag, self._usual, self._before(window)
         newer, older = held[0][1], held[-1][1]
+        # Where few joints have been measured, what is learnt of each counts for the others.
+        dt *= len(down) / max(len(down) - len(valid.predicted), 1)
         for leg, angles in enumerate(valid.joint_angles):
-            if angles is None or down[leg]:
+            if angles is None or down[leg] or leg in valid.predicted:
                 continue
             angle, speed, turned = angles[0], (newer[leg] - older[leg]) / window, 0.0
             for time, command in held:

@@ -2,16 +2,19 @@
 
 from __future__ import annotations
 
+import math
+from collections.abc import Iterable
+from itertools import chain
 from operator import attrgetter
-from typing import Any
+from typing import Any, TypeAlias
 
 import numpy as np
 
 from tarsus.control.limitation import Limitation, LimitationKind
-from tarsus.control.readings import CHANNELS, SensorReadings, ValidReadings
+from tarsus.control.readings import CHANNELS, SensorReadings, ValidReadings, Vector
 from tarsus.control.sensing.channel import AngularRateChannel, AttitudeChannel, Channel
 from tarsus.control.sensing.leg_channels import ContactChannel, JointAngleChannel, VectorChannel
-from tarsus.control.sensing.plain_values import as_number
+from tarsus.control.sensing.plain_values import as_items, as_number, as_vector
 from tarsus.gait.ground_heights import GroundHeights
 from tarsus.kinematics.mass import known_weight
 from tarsus.robot.joint_limits import joint_limits
@@ -32,8 +35,11 @@ _PULL = 0.25
 # Channels that are plausible wherever they are finite.
 _FINITE_CHANNELS = ("joint_speeds", "currents", "temperatures", "voltages")
 
-_NO_READINGS = ValidReadings()
-_VALUES = attrgetter(*CHANNELS)
+# Ages of the joints of each leg, where they are given one by one.
+_Ages: TypeAlias = tuple[Vector, ...] | None
+
+_NO_READINGS, _NO_AGES, _NONE = ValidReadings(), (math.nan, math.nan, math.nan), frozenset[int]()
+_VALUES, _JOINT_ANGLES = attrgetter(*CHANNELS), CHANNELS.index("joint_angles")
 _BAD_AGE = "age is not a number >= 0 s"
 
 
@@ -53,6 +59,7 @@ class ReadingsValidator:
 
     def __init__(self, robot: Robot) -> None:
         legs, fastest = robot.leg_codes, float(joint_limits(robot).speed.max())
+        self._legs = legs
         channels: dict[str, Any] = {
             "contacts": ContactChannel(legs),
             "attitude": AttitudeChannel(),
@@ -81,7 +88,7 @@ class ReadingsValidator:
         if readings is None:
             return _NO_READINGS
         most = max(_MOST_AGE, _MOST_TICKS * dt)
-        problem, ages = _channel_ages(readings, most)
+        problem, ages, of_joints = _channel_ages(readings, most, legs=len(self._legs))
         if problem:
             for channel in self._channels:
                 channel.reset()
@@ -90,21 +97,26 @@ class ReadingsValidator:
         values = _VALUES(readings)
         if ages:
             values = self._fresh(values, ages, most, rejected)
-        found = [
+        found: list[Any] = [
             value if value is None else channel.read(value, rejected)
             for channel, value in zip(self._channels, values, strict=True)
         ]
         if not ages:
             # An age that is no number is none.
             age = max(0.0, as_number(readings.age))
-            return ValidReadings._make((*found, age, age, tuple(rejected)))
+            return ValidReadings._make((*found, age, None, age, age, _NONE, tuple(rejected)))
+        if of_joints and found[_JOINT_ANGLES]:
+            young = self._young(of_joints, most, rejected)
+            kept = tuple(each if leg in young else None for leg, each in enumerate(found[_JOINT_ANGLES]))
+            found[_JOINT_ANGLES] = kept if any(kept) else None
+            ages["joint_angles"] = max((max(of_joints[leg]) for leg in young), default=0.0)
         fresh = [name for name, value in zip(CHANNELS, values, strict=True) if value is not None]
         tells = next((name for name in ("contacts", "forces") if name in fresh), "joint_angles")
-        contact_age, ground_age = (max(0.0, as_number(ages.get(name, 0.0))) for name in (tells, "ground"))
-        return ValidReadings._make((*found, ground_age, contact_age, tuple(rejected)))
+        joint, ground, contact = (max(0.0, ages.get(name, 0.0)) for name in ("joint_angles", "ground", tells))
+        return ValidReadings._make((*found, joint, of_joints, ground, contact, _NONE, tuple(rejected)))
 
     def _fresh(
-        self, values: tuple[Any, ...], ages: dict[str, Any], most: float, rejected: list[str]
+        self, values: tuple[Any, ...], ages: dict[str, float], most: float, rejected: list[str]
     ) -> tuple[Any, ...]:
         """Return the readings, None for those that are too old."""
         fresh = list(values)
@@ -114,6 +126,13 @@ class ReadingsValidator:
                 self._channels[index].reset()
                 fresh[index] = None
         return tuple(fresh)
+
+    def _young(self, ages: tuple[Vector, ...], most: float, rejected: list[str]) -> list[int]:
+        """Return the legs of which no joint angle is too old."""
+        pairs = zip(self._legs, ages, strict=True)
+        stale = [_stale(f"joint_angles of {leg}", _oldest(of_leg), most) for leg, of_leg in pairs]
+        rejected += filter(None, stale)
+        return [leg for leg, problem in enumerate(stale) if not problem]
 
 
 def rejections(valid: ValidReadings) -> list[Limitation]:
@@ -131,27 +150,43 @@ class _GroundChannel(Channel):
         return None
 
 
-def _channel_ages(readings: SensorReadings, most: float) -> tuple[str, dict[str, Any]]:
-    """Return what is wrong with all readings together, "" if nothing is, and the ages of single channels."""
+def _channel_ages(readings: SensorReadings, most: float, *, legs: int) -> tuple[str, dict[str, float], _Ages]:
+    """Return what is wrong with all readings together, "" if nothing is; the ages of single channels; those of joints.
+
+    Where joints have an age each, that of joint angles is 0, as they are rejected leg by leg, and that of another
+    channel the greatest one.
+    """
     if type(readings) is not SensorReadings:
-        return "all channels: not of class SensorReadings", {}
+        return "all channels: not of class SensorReadings", {}, None
     age: Any = readings.age
     if type(age) is float or not hasattr(type(age), "keys"):
-        return _stale("all channels", age, most), {}
+        return _stale("all channels", as_number(age), most), {}, None
     try:
-        ages = {name: age[name] for name in CHANNELS if name in age}
-        unknown = len(age) != len(ages)
+        given = {name: age[name] for name in CHANNELS if name in age}
+        unknown = len(age) != len(given)
     except Exception:  # a foreign mapping may raise anything
-        return f"all channels: {_BAD_AGE}", {}
-    return ("all channels: age of one that does not exist" if unknown else ""), ages
+        return f"all channels: {_BAD_AGE}", {}, None
+    ages, of_joints = dict[str, float](), None
+    for name, value in given.items():
+        rows = as_items(value, (legs, 3))
+        vectors = tuple(as_vector(row) or _NO_AGES for row in rows or ())
+        ages[name] = as_number(value) if rows is None else _oldest(chain(*vectors))
+        if vectors and name == "joint_angles":
+            of_joints, ages[name] = vectors, 0.0
+    return ("all channels: age of one that does not exist" if unknown else ""), ages, of_joints
 
 
-def _stale(name: str, age: Any, most: float) -> str:
+def _oldest(ages: Iterable[float]) -> float:
+    """Return the greatest age; NaN if one is no number >= 0."""
+    known = list(ages)
+    return max(known) if all(age >= 0.0 for age in known) else math.nan
+
+
+def _stale(name: str, age: float, most: float) -> str:
     """Return what is wrong with an age, "" if it is at most the greatest."""
-    seconds = as_number(age)
-    if 0.0 <= seconds <= most:
+    if 0.0 <= age <= most:
         return ""
-    return f"{name}: older than {1e3 * most:.3g} ms" if seconds > 0 else f"{name}: {_BAD_AGE}"
+    return f"{name}: older than {1e3 * most:.3g} ms" if age > 0 else f"{name}: {_BAD_AGE}"
 
 
 def _forces_channel(robot: Robot) -> VectorChannel:

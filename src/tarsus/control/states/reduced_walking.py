@@ -158,14 +158,17 @@ class ReducedWalking(Walking):
 
     def _of_legs(self, readings: SensorReadings) -> SensorReadings:
         """Return the readings of the legs that are left."""
-        legs, values = self._robot.legs, dict[str, Any]()
-        for name in CHANNELS:
-            items = None if name in _OF_BODY else as_items(getattr(readings, name), (legs, 3), (legs,))
-            if items is not None:
-                values[name] = [items[leg] for leg in self._legs]
+        values = self._left({name: getattr(readings, name) for name in CHANNELS if name not in _OF_BODY})
         if "joint_angles" in values:
             values["joint_angles"] = _turned(map(as_vector, values["joint_angles"]), -self._zero[:, 0])
-        return dataclasses.replace(readings, **values)
+        ages = dict(readings.age) | self._left(readings.age) if isinstance(readings.age, dict) else readings.age
+        return dataclasses.replace(readings, **values, age=ages)
+
+    def _left(self, values: dict[str, Any]) -> dict[str, Any]:
+        """Return the items of the legs that are left, of those values that have one for each leg."""
+        legs = self._robot.legs
+        items = {name: as_items(value, (legs, 3), (legs,)) for name, value in values.items()}
+        return {name: [each[leg] for leg in self._legs] for name, each in items.items() if each is not None}
 
 
 def _turned(legs: Iterable[Vector | None], coxae: Float[np.ndarray, "legs"]) -> tuple[Vector | None, ...]:

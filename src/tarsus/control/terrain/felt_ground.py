@@ -11,9 +11,10 @@ import numpy as np
 from tarsus.control.limitation import Limitation, LimitationKind
 from tarsus.control.readings import SensorReadings, ValidReadings
 from tarsus.control.sensing.body_condition import BodyCondition
+from tarsus.control.sensing.continued_readings import ContinuedReadings
 from tarsus.control.sensing.foot_loads import FootLoads
 from tarsus.control.sensing.swing_monitor import USUAL_LAG, SwingMonitor
-from tarsus.control.sensing.validation import ReadingsValidator, rejections
+from tarsus.control.sensing.validation import rejections
 from tarsus.control.terrain.body_motion import BodyMotion
 from tarsus.control.terrain.ground_contact import hovering, met_ground, not_sunk, put_down, supporting
 from tarsus.control.terrain.missing_ground import SLOW, MissingGround
@@ -67,8 +68,8 @@ class FeltGround:
         How the body moves over its standing feet; what is done where feet find no ground.
     condition, support : BodyCondition, Support
         Whether the robot is in the air or has fallen; whether feet may lift off, and at which pace the walk goes on.
-    measured : ValidReadings
-        The readings that were used last.
+    readings, measured : ContinuedReadings, ValidReadings
+        The readings that were given last; those that were used.
     offsets : array, shape (legs,), or None
         Upward offsets of compliant feet [m]; None of stiff ones.
     """
@@ -80,7 +81,7 @@ class FeltGround:
         self.missing = MissingGround(robot.leg_names, scale=body.reach.scale)
         self.measured, self.support, self.condition = ValidReadings(), Support(), BodyCondition()
         self.offsets: Float[np.ndarray, "legs"] | None = None
-        self._validator, self._loads, self._tipping = ReadingsValidator(robot), loads, Tipping(body.reach.scale)
+        self.readings, self._loads, self._tipping = ContinuedReadings(robot), loads, Tipping(body.reach.scale)
         self._commanded, self._still, self._swings = angles, True, SwingMonitor()
         self._centre = complex(*centre_of_mass(robot, angles)[:2].tolist())
         # What feet are given while all is as planned; ticks and times since contacts and support were looked at.
@@ -108,7 +109,7 @@ class FeltGround:
         angles : array, shape (legs, 3)
             Joint angles [rad].
         """
-        valid = self.measured = self._validator.validate(readings, dt)
+        valid = self.measured = self.readings.step(readings, angles, dt, lag=self._swings.lag)
         down, self._commanded = state.down.tolist(), angles
         stopped = self._swings.step(angles[:, 0].tolist(), valid, dt, down)
         measured = self._loads.contacts(valid, angles, state, dt)
@@ -266,8 +267,7 @@ class FeltGround:
 
     def _under(self, state: GaitState, leg: int, place: complex, *, down: bool) -> GroundUnder:
         """Return the ground under a foot in the air or without contact, here in the heading frame."""
-        heading = cmath.exp(1j * state.yaw)
-        lifted = self.contacts.lifted[leg]
+        heading, lifted = cmath.exp(1j * state.yaw), self.contacts.lifted[leg]
         known = not self.condition.in_air and self.contacts.is_known(leg) and (down or lifted)
         stays = self.missing.gives_up(leg) or (down and self.missing.is_raised(-sunk_at(place, self.body.off)))
         goal = place if down else state.in_heading(complex(state.foothold[leg]))

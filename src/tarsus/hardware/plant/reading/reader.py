@@ -224,9 +224,9 @@ class ServoReader:
         return self._times.copy()
 
     @property
-    def age(self) -> float:
-        """Time since the oldest of the last positions was measured [s]."""
-        return max(0.0, self._clock.now() - float(np.nanmin(self._times)))
+    def ages(self) -> Float[np.ndarray, "legs 3"]:
+        """Time since each joint was measured last; NaN where never [s]."""
+        return np.maximum(self._clock.now() - self._times, 0.0)
 
     def _doubted(self, name: str, dt: float, begun: float) -> Iterator[Reading]:
         """Ask again who did not answer, where that is not done soon by the next tick."""

@@ -211,7 +211,7 @@ class ServoInput:
             "currents": telemetry.currents,
         }
         known: dict[str, Any] = {name: array.copy() for name, array in channels.items() if not np.isnan(array).any()}
-        ages: dict[str, float] = {name: reader.age for name in ("joint_angles", "joint_speeds") if name in known}
+        ages: dict[str, Any] = {name: reader.ages for name in ("joint_angles", "joint_speeds") if name in known}
         age = None if self._feet is None else self._feet.age
         if self._feet is not None and age is not None:
             known["contacts"], ages["contacts"] = self._feet.contacts(planned), age
@@ -248,7 +248,7 @@ class ServoInput:
             fault=fault,
         )
 
-    def _attitude(self, imu: AttitudeLine, ages: dict[str, float]) -> dict[str, Any]:
+    def _attitude(self, imu: AttitudeLine, ages: dict[str, Any]) -> dict[str, Any]:
         """Return the channel of the inertial sensor; without it the robot walks on, and is not levelled."""
         try:
             age = imu.read()

@@ -1,0 +1,142 @@
+"""Continued readings: what was measured in an earlier tick, until there is something newer."""
+
+from __future__ import annotations
+
+import math
+from collections import deque
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from tarsus.control.readings import CHANNELS, SensorReadings, ValidReadings
+from tarsus.control.sensing.validation import ReadingsValidator
+from tarsus.robot.robot import Robot
+
+if TYPE_CHECKING:
+    from jaxtyping import Float
+
+__all__ = ["ContinuedReadings"]
+
+# For how long the last reading stands for those that are missing [s].
+_HELD = 0.1
+# Channels that are continued; contacts that are missing tell the contact estimator nothing.
+_OF_LEGS, _OF_BODY = ("joint_angles", "forces", "torques"), ("attitude", "angular_rates")
+# For how long commands are kept [s]: as long as readings are held, besides the longest lag of joints.
+_KEPT = 0.35
+# Angles are new that are no older than other new ones by so many ticks; how fast the age of these may rise [s/s].
+_SAME, _SLOWER = 0.5, 0.02
+
+
+class ContinuedReadings:
+    """Continues readings that are missing or given again: where answers are lost, or servos are asked in turn.
+
+    What is missing, or has been rejected, stays as it was measured last, for 0.1 s. Joint angles of an earlier tick, as
+    their ages tell, are taken to have moved as commanded since: what they are off by stays the same.
+
+    Parameters
+    ----------
+    robot : Robot
+        A single robot.
+
+    Attributes
+    ----------
+    valid : ValidReadings
+        Those of the last readings that passed validation.
+    """
+
+    def __init__(self, robot: Robot) -> None:
+        self.valid, self._validator = ValidReadings(), ReadingsValidator(robot)
+        # The readings that were returned last, as they were measured, and which channels they have.
+        self._last, self._given = self.valid, [False] * len(CHANNELS)
+        # For how long a channel of the body (leg -1), or a leg's reading in one, has been missing [s].
+        self._missing = dict[tuple[str, int], float]()
+        self._now = 0.0
+        self._commands: deque[tuple[float, Float[np.ndarray, "legs 3"]]] = deque()
+        # Ages of joint angles, of all joints or of each, and those of new ones [s].
+        self._ages: float | Float[np.ndarray, "legs 3"] = _KEPT
+        self._usual = math.inf
+
+    def step(
+        self, readings: SensorReadings | None, commanded: Float[np.ndarray, "legs 3"], dt: float, *, lag: float
+    ) -> ValidReadings:
+        """Return the readings of now; joint angles with the age that new ones have.
+
+        Parameters
+        ----------
+        readings : SensorReadings or None
+            The readings that are given.
+        commanded : array, shape (legs, 3)
+            Joint angles that were commanded in the last tick [rad].
+        dt, lag : float
+            Time since the last tick; from a command to its reading [s].
+        """
+        self._now += dt
+        self._commands.append((self._now, commanded))
+        while self._now - self._commands[0][0] > _KEPT:
+            self._commands.popleft()
+        valid = self.valid = self._validator.validate(readings, dt)
+        given = [value is not None for value in valid[: len(CHANNELS)]]
+        if given != self._given or valid.rejected:
+            valid = self._held(valid, dt)
+            self._given = [value is not None for value in valid[: len(CHANNELS)]]
+        elif self._missing:
+            self._missing.clear()
+        self._last = valid
+        return valid if valid.joint_angles is None else self._predicted(valid, dt, lag)
+
+    def _held(self, valid: ValidReadings, dt: float) -> ValidReadings:
+        """Return the readings with the last ones for those that have not been missing for long."""
+        held, legs = dict[str, Any](), len(self._commands[-1][1])
+        for name in _OF_LEGS:
+            now, last = (getattr(readings, name) or (None,) * legs for readings in (valid, self._last))
+            feet = enumerate(zip(now, last, strict=True))
+            items = tuple(self._newest((name, leg), given, before, dt) for leg, (given, before) in feet)
+            held[name] = None if items.count(None) == legs else items
+        for name in _OF_BODY:
+            held[name] = self._newest((name, -1), getattr(valid, name), getattr(self._last, name), dt)
+        return valid._replace(**held)
+
+    def _newest(self, key: tuple[str, int], given: Any, last: Any, dt: float) -> Any:
+        """Return what is given, or for a while the last of it."""
+        missing = self._missing.pop(key, 0.0) + dt
+        if given is not None or last is None or missing > _HELD:
+            return given
+        self._missing[key] = missing
+        return last
+
+    def _predicted(self, valid: ValidReadings, dt: float, lag: float) -> ValidReadings:
+        """Return the readings with the joint angles of now."""
+        ages: float | Float[np.ndarray, "legs 3"] = np.array(valid.joint_ages) if valid.joint_ages else valid.joint_age
+        # Legs that have been given the last ones, or have none.
+        old = [leg for name, leg in self._missing if name == "joint_angles"]
+        if valid.rejected:
+            old += [leg for leg, angles in enumerate(valid.joint_angles or ()) if angles is None]
+        if old:
+            shape = self._commands[-1][1].shape
+            before, ages = np.broadcast_to(self._ages, shape), np.broadcast_to(ages, shape).copy()
+            ages[old] = before[old] + dt
+        self._ages = ages
+        youngest = ages if isinstance(ages, float) else float(ages.min())
+        self._usual = usual = min(youngest, self._usual + _SLOWER * dt)
+        if ages is youngest and ages <= usual + _SAME * dt:
+            return valid
+        held = np.broadcast_to(ages, self._commands[-1][1].shape) - usual
+        moved, predicted = self._moved(held, lag), np.flatnonzero(held[:, 0] > _SAME * dt)
+        angles = [
+            leg and (leg[0] + coxa, leg[1] + femur, leg[2] + tibia)
+            for leg, (coxa, femur, tibia) in zip(valid.joint_angles or (), moved.tolist(), strict=True)
+        ]
+        return valid._replace(joint_angles=tuple(angles), joint_age=usual, predicted=frozenset(predicted.tolist()))
+
+    def _moved(self, held: Float[np.ndarray, "legs 3"], lag: float) -> Float[np.ndarray, "legs 3"]:
+        """Return what joints have been commanded to move since, a lag before [rad]."""
+        times, commands = (np.array(column) for column in zip(*self._commands, strict=True))
+        if len(times) < 2:
+            return np.zeros_like(held)
+        then = self._now - lag - np.stack([np.zeros_like(held), held])
+        after = np.clip(np.searchsorted(times, then), 1, len(times) - 1)
+        share = np.clip((then - times[after - 1]) / (times[after] - times[after - 1]), 0.0, 1.0)
+        older, newer = (np.take_along_axis(commands, index, axis=0) for index in (after - 1, after))
+        now, before = older + share * (newer - older)
+        moved: np.ndarray = now - before
+        return moved
