@@ -403,6 +403,17 @@ def test_a_foot_that_slides_is_told_by_the_others():
     assert max(odometry.slip) == 0.0
 
 
+def test_noise_of_joint_angles_is_no_slip():
+    odometry, random, slips = LegOdometry(STRIDER), np.random.default_rng(0), []
+    angles = WalkController(STRIDER).angles
+    for _ in range(500):
+        measured = (angles + math.radians(0.5) * random.standard_normal((6, 3))).tolist()
+        odometry.step(ValidReadings(joint_angles=measured), range(6), FORWARD._replace(moved=0j), 0.04)
+        slips.append(max(odometry.slip))
+    # The feet are 60 mm/s fast, to and fro.
+    assert np.quantile(slips[10:], 0.9) < 0.03
+
+
 def test_contacts_come_from_switches_or_else_from_load_cells():
     loads = FootLoads(STRIDER, None)
     controller = WalkController(STRIDER)

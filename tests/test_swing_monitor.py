@@ -6,6 +6,7 @@ from collections import deque
 import numpy as np
 import pytest
 
+import tarsus
 from tarsus.control.readings import ValidReadings
 from tarsus.control.sensing.swing_monitor import SwingMonitor
 
@@ -80,6 +81,20 @@ def test_feet_that_stand_and_joints_that_are_not_measured_tell_nothing():
         commanded = [swung(tick * DT)] * 6
         assert monitor.step(commanded, ValidReadings(), DT, AIR) == []
         assert monitor.step(commanded, ValidReadings(joint_angles=(None,) * 6), DT, AIR) == []
+
+
+def test_the_noise_of_joint_angles_is_no_stop_as_a_walk_begins(monkeypatch):
+    stopped, step = [], SwingMonitor.step
+    monkeypatch.setattr(SwingMonitor, "step", lambda *args: stopped.append(found := step(*args)) or found)
+    for seed in (3, 6, 9):
+        controller, random = tarsus.WalkController(tarsus.load_robot("strider")), np.random.default_rng(seed)
+        angles, speed = [controller.angles] * 4, 0.5 * controller.top_speed((1, 0, 0))
+        for _ in range(100):
+            measured = angles[-4] + math.radians(0.5) * random.standard_normal((6, 3))
+            readings = tarsus.SensorReadings(joint_angles=measured, contacts=controller.contacts, attitude=(0.0, 0.0))
+            angles.append(controller.step((speed, 0.0, 0.0), DT, readings))
+    assert len(stopped) == 300
+    assert not any(stopped)
 
 
 def test_only_joints_that_have_been_measured_tell_of_a_stop():

@@ -68,7 +68,7 @@ class LegOdometry:
     """
 
     def __init__(self, robot: Robot) -> None:
-        self.behind, self.slip = 0j, [0.0] * robot.legs
+        self.behind, self.slip, self._slides = 0j, [0.0] * robot.legs, [0j] * robot.legs
         self._names, self._solver = robot.leg_names, ScalarSolver(robot)
         self._mounts = list(zip(robot.mount_yaw.tolist(), robot.foot_radius.tolist(), strict=True))
         # Where the feet were that stood, and the inclination of their tibiae.
@@ -83,7 +83,8 @@ class LegOdometry:
 
     def forget(self) -> None:
         """Forget what is missing, where the feet were, and that they slip: the robot is carried."""
-        self.behind, self._before, self.slip = 0j, {}, [0.0] * len(self.slip)
+        self.behind, self._before, self._slides = 0j, {}, [0j] * len(self.slip)
+        self.slip = [0.0] * len(self.slip)
 
     def step(self, valid: ValidReadings, bears: Sequence[int], commanded: CommandedMotion, dt: float) -> complex:
         """Return the velocity that makes up for what is missing, in the heading frame [m/s].
@@ -167,12 +168,14 @@ class LegOdometry:
 
     def _note_slip(self, feet: list[complex], moved: dict[int, complex], dt: float) -> None:
         """Take note of what the motion over each foot differs by from that of a body that turns over all of them."""
-        speeds, share = [0.0] * len(self.slip), min(dt / _SLIP_TIME, 1.0)
+        slides, share = [0j] * len(self.slip), min(dt / _SLIP_TIME, 1.0)
         if len(moved) >= _LEAST_FEET:
             middle = sum(feet[leg] for leg in moved) / len(moved)
             places = {leg: feet[leg] - middle for leg in moved}
             turned = sum((place.conjugate() * moved[leg]).imag for leg, place in places.items())
             turned /= sum(abs(place) ** 2 for place in places.values())
             for leg, place in places.items():
-                speeds[leg] = abs(moved[leg] - 1j * turned * place) / dt
-        self.slip = [slip + share * (speed - slip) for slip, speed in zip(self.slip, speeds, strict=True)]
+                slides[leg] = (moved[leg] - 1j * turned * place) / dt
+        # The noise of joint angles goes to and fro.
+        self._slides = [mean + share * (now - mean) for mean, now in zip(self._slides, slides, strict=True)]
+        self.slip = [abs(mean) for mean in self._slides]

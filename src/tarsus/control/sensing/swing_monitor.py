@@ -12,9 +12,9 @@ __all__ = ["USUAL_LAG", "SwingMonitor"]
 USUAL_LAG = 0.03
 """Lag of the joints of usual servos behind their commands [s]."""
 
-# Angle by which a joint is behind that is stopped [rad], besides so many times the usual one; how fast that is learnt
-# [1/s].
-_BEHIND, _TIMES, _MEAN_RATE = 0.02, 3.0, 1.0
+# Angle by which a joint is behind that is stopped [rad], besides so many times the usual one; that at first [rad], and
+# how fast it is learnt [1/s].
+_BEHIND, _TIMES, _AT_FIRST, _MEAN_RATE = 0.02, 3.0, 0.02, 1.0
 # Longest lag of a joint, from its command to the reading [s]; how fast it is learnt [1/s]; and the square of joint
 # speeds below which they tell little of it [rad^2/s^2].
 _LONGEST_LAG, _RATE, _SLOW = 0.12, 5.0, 0.5
@@ -37,7 +37,7 @@ class SwingMonitor:
     """
 
     def __init__(self) -> None:
-        self.lag, self._lag, self._usual = 0.0, _LONGEST_LAG, 0.0
+        self.lag, self._lag, self._usual = 0.0, _LONGEST_LAG, _AT_FIRST
         # What was commanded, last first, and for how long [s].
         self._commanded, self._times = deque[list[float]](), deque[float]()
 
