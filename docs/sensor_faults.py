@@ -42,8 +42,10 @@ SUITES: dict[str, Any] = {
     "5 % of contacts wrong": with_sensors(contacts=FootSwitch(flips=0.05)),
     "attitude with 1 deg of noise and bias": with_sensors(attitude=ONE_DEGREE),
 }
+LOAD_CELLS = "load cells with offsets of 1 N and no switches"
 LOST = {"contacts": FootSwitch(dropout=0.3), **{name: Sensor(dropout=0.3) for name in CONTINUOUS}}
 SUITES |= {
+    LOAD_CELLS: with_sensors(contacts=None, forces=Sensor(noise=0.1, bias=1.0)),
     "30 % of readings lost and the last given again": with_sensors(**LOST),
     "joint angles measured 16 times a second": with_sensors(joint_angles=Sensor(rate=16)),
 }

@@ -428,6 +428,30 @@ def test_contacts_come_from_switches_or_else_from_load_cells():
     assert loads.contacts(ValidReadings(), angles, state, 0.01) is None
 
 
+def test_the_zero_offset_of_a_load_cell_is_learnt_while_its_foot_swings():
+    loads, controller = FootLoads(STRIDER, None), WalkController(STRIDER)
+    angles, state = controller.angles, controller._tick.gait
+    offsets, weight = [2.0, -1.0, 9.0, 0.0, 2.0, 2.0], tarsus.total_mass(STRIDER) * 9.81
+    unloaded = ValidReadings(forces=tuple((0.0, 0.0, offset) for offset in offsets))
+    down, phases = np.array([False, False, False, True, False, False]), np.array([0.3, 0.4, 0.3, 0.0, 0.1, 0.6])
+    swings = state._replace(down=down, swing_phase=phases)
+
+    def touch(valid):
+        return loads.contacts(valid, angles, state, 0.04)
+
+    assert touch(unloaded) == [True, False, True, False, True, True]
+    for _ in range(40):
+        assert loads.offsets(unloaded, angles, swings, 0.04, out=[]) is None
+    # Learnt of feet in the middle of their swings, and no more than 0.15 of the weight.
+    assert touch(unloaded) == [False, False, True, False, True, True]
+    pressed = unloaded._replace(forces=((0.0, 0.0, 4.0), (0.0, 0.0, 1.0), (0.0, 0.0, 0.15 * weight + 1.0), *[None] * 3))
+    assert touch(pressed) == [True, True, False, None, None, None]
+    # A foot that meets an obstacle presses on it for a moment.
+    loads, hit = FootLoads(STRIDER, None), ValidReadings(forces=((0.0, 0.0, weight), *[None] * 5))
+    loads.offsets(hit, angles, swings, 0.04, out=[])
+    assert loads.contacts(hit._replace(forces=((0.0, 0.0, 0.07 * weight), *[None] * 5)), angles, state, 0.04)[0]
+
+
 def test_joint_angles_tell_of_contacts_once_switches_have_told_nothing_for_some_time(monkeypatch):
     loads, controller, told = FootLoads(STRIDER, None), WalkController(STRIDER), []
     angles, state = controller.angles, controller._tick.gait

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 import edges
+import sensor_faults
 import tarsus
 from sample_contacts import find_open, take_in
 from sample_gait_states import begun, rest_of, setup_of
@@ -575,6 +576,17 @@ def test_a_robot_whose_leg_has_rested_on_an_edge_walks_back_from_it_calmly(edge)
     found, way = edges.drive(robot, terrain.Step(rise=-0.3, start=edge), sensors, commands, 0.02)
     assert way[-1] < max(way) - 0.05
     assert found.tilt < 10
+
+
+@pytest.mark.no_cover
+@pytest.mark.parametrize("edge", [0.5, 0.515])
+def test_a_robot_stops_calmly_at_an_edge_whatever_the_zero_offsets_of_its_load_cells(edge):
+    # Feet over the edge touched by 1 N of offset, and it tipped by 11 to 12 degrees.
+    robot, sensors = tarsus.load_robot("makeyourpet"), sensor_faults.SUITES[sensor_faults.LOAD_CELLS]
+    speed = 0.5 * tarsus.WalkController(robot).top_speed((1.0, 0.0, 0.0))
+    found, _ = edges.drive(robot, terrain.Step(rise=-0.3, start=edge), sensors, [((speed, 0.0, 0.0), 8.0)], 0.01)
+    assert (found.kind, found.touched) == ("", 0.0)
+    assert found.tilt < 6
 
 
 @pytest.mark.no_cover

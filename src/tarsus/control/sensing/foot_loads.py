@@ -23,6 +23,9 @@ __all__ = ["FootLoads"]
 
 # A foot that bears this share of the robot's weight is on the ground.
 _CONTACT_SHARE = 0.04
+# Swing phases between which a foot is in the air; how fast the zero offset of its load cell is learnt there [1/s], and
+# its greatest error at once and in all, over the robot's weight.
+_RISEN, _LANDS, _RATE, _MOST_ERROR, _MOST_OFFSET = 0.2, 0.5, 5.0, 0.1, 0.15
 # Joint angles tell of contacts once nothing else has for so long [s].
 _UNTOLD = 0.15
 # Greatest speed of feet that go down; where contacts are estimated, feet press on the ground before they are known to
@@ -51,6 +54,8 @@ class FootLoads:
         self._torques = FootForceEstimator(robot) if robot.has_masses else None
         self._joints = JointContacts(robot) if robot.has_masses and all(map(all, robot.servos)) else None
         self.estimated, self._untold = False, math.inf
+        # What load cells measure without a load [N].
+        self._zeros = [0.0] * robot.legs
         self._filter = AdmittanceFilter(admittance, robot.legs) if admittance else None
 
     @property
@@ -85,7 +90,8 @@ class FootLoads:
             return valid.contacts
         if valid.forces is not None and self._weight:
             least = _CONTACT_SHARE * self._weight
-            return [None if force is None else force[2] > least for force in valid.forces]
+            cells = zip(valid.forces, self._zeros, strict=True)
+            return [None if force is None else force[2] - zero > least for force, zero in cells]
         self._untold = untold
         if valid.joint_angles is not None and self._joints is not None and untold > _UNTOLD:
             found = self._joints.contacts(valid, angles, state, dt)
@@ -97,6 +103,8 @@ class FootLoads:
     ) -> Float[np.ndarray, "legs"] | None:
         """Return the upward offsets of compliant feet by measured forces, or by joint torques [m]; None of stiff ones.
 
+        The zero offsets of load cells are learnt from feet in the air.
+
         Parameters
         ----------
         valid : ValidReadings
@@ -106,6 +114,8 @@ class FootLoads:
         state, dt, out : GaitState, float, list of int
             The gait state; length of the tick [s]; legs that are taken out of the gait: they bear no load.
         """
+        if valid.forces is not None:
+            self._learn_zeros(valid.forces, state, dt)
         if self._filter is None:
             return None
         forces: Sequence[Vector | None] | None = valid.forces
@@ -118,3 +128,11 @@ class FootLoads:
         expected = zip(forces, balanced_forces(places, stands, [0.0, 0.0], self._weight), stands, strict=True)
         errors = [force[2] - share if force is not None and down else None for force, share, down in expected]
         return self._filter.step(errors, dt)
+
+    def _learn_zeros(self, forces: Sequence[Vector | None], state: GaitState, dt: float) -> None:
+        """Learn the zero offsets of the load cells of feet that swing: these may meet an obstacle, but not for long."""
+        most, share = _MOST_OFFSET * self._weight, min(_RATE * dt, 1.0)
+        for leg, (force, on, phase) in enumerate(zip(forces, state.down, state.swing_phase, strict=True)):
+            if force is not None and not on and _RISEN < phase < _LANDS:
+                error = min(max(force[2] - self._zeros[leg], -_MOST_ERROR * self._weight), _MOST_ERROR * self._weight)
+                self._zeros[leg] = min(max(self._zeros[leg] + share * error, -most), most)
