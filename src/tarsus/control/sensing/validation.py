@@ -105,13 +105,13 @@ class ReadingsValidator:
             # An age that is no number is none.
             age = max(0.0, as_number(readings.age))
             return ValidReadings._make((*found, age, None, age, age, _NONE, tuple(rejected)))
+        given = [name for name, value in zip(CHANNELS, values, strict=True) if value is not None]
         if of_joints and found[_JOINT_ANGLES]:
             young = self._young(of_joints, most, rejected)
             kept = tuple(each if leg in young else None for leg, each in enumerate(found[_JOINT_ANGLES]))
             found[_JOINT_ANGLES] = kept if any(kept) else None
             ages["joint_angles"] = max((max(of_joints[leg]) for leg in young), default=0.0)
-        fresh = [name for name, value in zip(CHANNELS, values, strict=True) if value is not None]
-        tells = next((name for name in ("contacts", "forces") if name in fresh), "joint_angles")
+        tells = next((name for name in ("contacts", "forces") if name in given), "joint_angles")
         joint, ground, contact = (max(0.0, ages.get(name, 0.0)) for name in ("joint_angles", "ground", tells))
         return ValidReadings._make((*found, joint, of_joints, ground, contact, _NONE, tuple(rejected)))
 
@@ -168,11 +168,12 @@ def _channel_ages(readings: SensorReadings, most: float, *, legs: int) -> tuple[
         return f"all channels: {_BAD_AGE}", {}, None
     ages, of_joints = dict[str, float](), None
     for name, value in given.items():
-        rows = as_items(value, (legs, 3))
-        vectors = tuple(as_vector(row) or _NO_AGES for row in rows or ())
-        ages[name] = as_number(value) if rows is None else _oldest(chain(*vectors))
-        if vectors and name == "joint_angles":
-            of_joints, ages[name] = vectors, 0.0
+        ages[name] = as_number(value)
+        if math.isnan(ages[name]) and (rows := as_items(value, (legs, 3))):
+            vectors = tuple(as_vector(row) or _NO_AGES for row in rows)
+            ages[name] = _oldest(chain(*vectors))
+            if name == "joint_angles":
+                of_joints, ages[name] = vectors, 0.0
     return ("all channels: age of one that does not exist" if unknown else ""), ages, of_joints
 
 
