@@ -19,7 +19,7 @@ from estimated_contacts import JOINTS
 from leg_failures import break_servo
 from page_tables import measured, write_tables
 from rough_ground import CLEAR, LIES, PAGE, ROBOTS, switches
-from sensor_faults import LATE, ONE_DEGREE, with_sensors
+from sensor_faults import LATE, LOAD_CELLS, LOST, ONE_DEGREE, SUITES, with_sensors
 from tarsus.simulation import SensorSuite, SimulatedPlant, terrain
 
 DT, MINUTE = 0.01, 60.0
@@ -33,6 +33,8 @@ SENSORS: dict[str, Any] = {
     "1 % wrong": switches(flips=0.01),
     "5 % wrong": switches(flips=0.05),
     "1 deg": with_sensors(attitude=ONE_DEGREE),
+    "lost": with_sensors(**LOST),
+    "load cells": SUITES[LOAD_CELLS],
 }
 # Of the weight, and how long [s].
 PUSH, PUSHED = 0.1, 0.2
@@ -65,7 +67,7 @@ class Minute(NamedTuple):
         pushes = tuple(sorted(draw.uniform(2, MINUTE, 3).tolist())) if draw.random() < 1 / 3 else ()
         stuck = (int(draw.integers(6)), bool(draw.random() < 1 / 2)) if draw.random() < 1 / 8 else None
         servo = (float(draw.uniform(5, 40)), int(draw.integers(6)), int(draw.integers(3)))
-        stuck = None if sensors == "smart" else stuck
+        stuck = None if sensors in {"smart", "load cells"} else stuck
         return cls(seed, robot, ground, height, sensors, pushes, stuck, servo if draw.random() < 1 / 8 else None)
 
     @property

@@ -1,5 +1,6 @@
 """Servos on a line that carries less than all positions in a tick: who is asked first, and how long for."""
 
+import dataclasses
 import math
 import random
 
@@ -9,8 +10,9 @@ import pytest
 import tarsus
 from tarsus import Command, RobotController
 from tarsus.errors import ServoFaultError, UnknownNameError
-from tarsus.hardware import ManualClock, ServoPlant, Telemetry, emulated_bus, nominal_calibration
+from tarsus.hardware import FootSwitches, ManualClock, ServoPlant, Telemetry, emulated_bus, nominal_calibration
 from tarsus.hardware.bus.patience import Patience
+from tarsus.hardware.live.emulated_feet import EmulatedFeet
 from tarsus.hardware.plant.fault import FaultKind
 from tarsus.hardware.plant.monitor.command_history import CommandHistory
 from tarsus.hardware.plant.monitor.motion_monitor import MotionMonitor
@@ -365,3 +367,25 @@ def test_commands_are_expected_after_the_delay_and_not_known_before_the_first():
     # Motions from before the first command tell nothing.
     history.moved(expected, expected, times=np.stack([times - 1.0, times]), which=np.ones((6, 3), dtype=bool))
     assert history.delay == 0.03
+
+
+@pytest.mark.no_cover
+@pytest.mark.parametrize(("kind", "rate"), [("lx16a", 25), ("dynamixel-mx", 20)])
+def test_feet_of_a_robot_whose_servos_are_read_in_turn_neither_slip_nor_meet_obstacles(kind, rate):
+    # Angles of up to 150 ms ago were taken for those of now: feet slipped by 250 mm/s, and some were stopped.
+    calibration, clock = nominal_calibration(STRIDER, "strider", kind=kind), ManualClock()
+    feet = dataclasses.replace(calibration.buses[0], name="feet", kind="servo2040", port="feet")
+    switches = FootSwitches(bus="feet", inputs=tuple(range(6)))
+    calibration = calibration.replace(buses=(*calibration.buses, feet), foot_switches=switches)
+    controller, source = RobotController(calibration.limited_robot), [(0.0, Command(twist=(0.1, 0.0, 0.0)))]
+    goals = calibration.commands(controller.output.angles).ravel().tolist()
+    bus, line = emulated_bus(kind, dict(zip(IDS, goals, strict=True)), clock=clock)
+    for number, goal in zip(IDS, goals, strict=True):
+        line.servos[number].place(goal)
+    board, device = emulated_bus("servo2040", {}, clock=clock)
+    device.levels = EmulatedFeet(calibration, {"main": line})
+    buses = {"main": bus, "feet": board}
+    plant = ServoPlant(calibration.limited_robot, calibration, buses=buses, clock=clock)
+    recording = tarsus.run(controller, plant, source, duration=6.0, rate=rate)
+    assert recording.problems == ()
+    assert recording.motion.body.position[-1, 0] > 0.55
