@@ -88,8 +88,9 @@ class Missing:
 
     def __call__(self, readings: SensorReadings, time: float) -> SensorReadings:  # noqa: ARG002 - as the others
         """Return what is read."""
-        lost = [name for name in ("contacts", *CONTINUOUS) if self.random.random() < 0.3]
-        return dataclasses.replace(readings, **dict.fromkeys(lost))
+        channels = ("contacts", *CONTINUOUS)
+        lost: dict[str, Any] = {name: None for name in channels if self.random.random() < 0.3}
+        return dataclasses.replace(readings, **lost)
 
 
 # What is wrong with readings; a name with a comma begins with that of the sensors.
