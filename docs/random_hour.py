@@ -7,7 +7,6 @@ python docs/random_hour.py --minutes 5 --seed 100 --print
 from __future__ import annotations
 
 import argparse
-import dataclasses
 import math
 import traceback
 from typing import Any, NamedTuple
@@ -19,7 +18,7 @@ from estimated_contacts import JOINTS
 from leg_failures import break_servo
 from page_tables import measured, write_tables
 from rough_ground import CLEAR, LIES, PAGE, ROBOTS, switches
-from sensor_faults import LATE, LOAD_CELLS, LOST, ONE_DEGREE, SUITES, with_sensors
+from sensor_faults import LATE, LOAD_CELLS, LOST, ONE_DEGREE, SUITES, Stuck, with_sensors
 from tarsus.simulation import SensorSuite, SimulatedPlant, terrain
 
 DT, MINUTE = 0.01, 60.0
@@ -195,9 +194,7 @@ def _lived(minute: Minute) -> Outcome:
             break_servo(plant, 3 * leg + joint, limp=True)
         readings = plant.step(output, DT)
         if minute.stuck_switch:
-            contacts = np.array(readings.contacts)
-            contacts[minute.stuck_switch[0]] = minute.stuck_switch[1]
-            readings = dataclasses.replace(readings, contacts=contacts)
+            readings = Stuck(*minute.stuck_switch)(readings, time)
         output = controller.step(command, DT, readings)
         stopped += [each.text() for each in output.interventions]
     if lying:

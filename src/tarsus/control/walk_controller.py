@@ -248,7 +248,7 @@ class WalkController:
 
     @property
     def measured(self) -> ValidReadings:
-        """The readings that were used last."""
+        """Those of the last readings that passed validation."""
         return self._walk.ground.readings.valid
 
     @property

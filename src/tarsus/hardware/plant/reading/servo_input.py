@@ -211,7 +211,8 @@ class ServoInput:
             "currents": telemetry.currents,
         }
         known: dict[str, Any] = {name: array.copy() for name, array in channels.items() if not np.isnan(array).any()}
-        ages: dict[str, Any] = {name: reader.ages for name in ("joint_angles", "joint_speeds") if name in known}
+        joint_ages = reader.ages
+        ages: dict[str, Any] = {name: joint_ages for name in ("joint_angles", "joint_speeds") if name in known}
         age = None if self._feet is None else self._feet.age
         if self._feet is not None and age is not None:
             known["contacts"], ages["contacts"] = self._feet.contacts(planned), age
