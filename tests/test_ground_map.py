@@ -152,6 +152,33 @@ def test_a_foot_over_a_hole_gets_another_foothold_as_soon_as_there_is_one():
     assert known.beside == {0: 0j}
 
 
+def known_over(heights):
+    """A ground map of heights that were given, once a foot in the air has been given its foothold on them."""
+    (state, reach, footholds), known = stepping(), GroundMap()
+    known.see(ValidReadings(ground=GroundHeights(heights=heights)), state)
+    on = [complex(foot) for foot in REST[1:5]]
+    feet = [(foot, float(heights[round(foot.real / 0.02) + 30, round(foot.imag / 0.02) + 30])) for foot in on]
+    for _ in range(100):
+        known.step(feet, None, state, 0.03, drift=0j)
+    known.choose(state, reach, footholds)
+    return known
+
+
+@pytest.mark.parametrize(("fall", "hole"), [(10.0, True), (1.5, True), (1.0, False)])
+def test_ground_out_of_reach_is_a_hole_beyond_an_edge_and_none_on_a_slope(fall, hole):
+    """A slope is walked on: the legs reach the ground once the robot is farther down."""
+    place = REST[0] + 0.05
+    heights = -np.clip(fall * (X - place.real) + 0.2, 0.0, 0.2)
+    assert known_over(heights).is_hole(place) == hole
+
+
+def test_ground_is_no_deeper_for_a_leg_as_the_plane_of_the_feet_rises():
+    """A plane of 22 degrees is 69 mm up at the foothold, from where 80 mm below the body are out of reach."""
+    known = known_over(np.where(X > 0.1, -0.08, 0.4 * X))
+    assert known.plane.at(REST[0]) > 0.06
+    assert not known.is_hole(REST[0])
+
+
 def test_a_foothold_that_moves_into_a_hole_is_left_for_another_one_until_the_foot_goes_down():
     (state, reach, footholds), known = stepping(), GroundMap()
     hole = np.abs(X + 1j * Y - (complex(state.foothold[0]) - state.origin) + 0.1) < 0.05
@@ -271,15 +298,14 @@ def test_a_foot_passes_over_what_is_on_its_way_and_rises_first_where_that_is_nea
 
 def test_the_body_knows_of_steps_before_its_feet_are_on_them():
     known, reach = GroundMap(), SimpleNamespace(rest=np.array(REST), strokes=np.full(6, 0.1 + 0j))
-    assert known.rises([0.0] * 6, reach) == ([0.0] * 6, [0.0] * 6)
+    assert known.rises_ahead(reach) is None
     known.step(standing(lambda place: 0.0), None, at(), 0.03, drift=0j)
     known.see(
-        ValidReadings(ground=GroundHeights(heights=np.where(X > 0.21, 0.08, np.where(X < -0.21, -0.05, 0.0)))), at()
+        ValidReadings(ground=GroundHeights(heights=np.where(X > 0.21, 0.08, np.where(np.abs(Y) > 0.21, -0.05, 0.0)))),
+        at(),
     )
-    least, most = known.rises([0.0] * 6, reach)
-    assert most == pytest.approx([0.08, 0.0, 0.0, 0.0, 0.0, 0.08])
-    assert least == pytest.approx([0.0] * 6)
-    assert known.rises([0.0] * 6, reach, looks=False) == ([0.0] * 6, [0.0] * 6)
+    least, most = known.rises_ahead(reach)
+    assert least == most == pytest.approx([0.08, 0.0, 0.0, 0.0, 0.0, 0.08])
 
 
 def crossed(sensors):

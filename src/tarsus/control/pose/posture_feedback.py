@@ -103,7 +103,15 @@ class PostureFeedback:
         self._rests = False
 
     def fit_to_reach(
-        self, rises: _Ranges, raises: tuple[float, float], dt: float, *, reach: _Ranges, height: float, share: float
+        self,
+        rises: _Ranges,
+        raises: tuple[float, float],
+        dt: float,
+        *,
+        reach: _Ranges,
+        height: float,
+        share: float,
+        ahead: _Ranges | None = None,
     ) -> None:
         """Change the height to keep towards the one at which all legs reach the plane of the feet.
 
@@ -117,11 +125,12 @@ class PostureFeedback:
             Length of the tick [s]; least and greatest height of each foot [m].
         height, share : float
             Commanded height of the body [m]; share of the slope that legs and body have room for, 0 to 1.
+        ahead : tuple of sequence of float, optional
+            The same heights at the next footholds, where these are known: no foot is taken off the ground for them.
         """
-        # Feet are between their least and greatest heights for heights over the ground between these.
-        most = min(rise - low for low, rise in zip(reach[0], rises[0], strict=True))
-        least = max(raises[0], *(rise - high for high, rise in zip(reach[1], rises[1], strict=True)))
-        wanted = max(min(raises[1], most), least) if most >= least else (most + least) / 2
+        wanted = raises[1]
+        for least, most in (_heights(feet, reach, raises[0]) for feet in (ahead or rises, rises)):
+            wanted = max(min(wanted, most), least) if most >= least else (most + least) / 2
         wanted = max(wanted, -_MOST_LOWER * height)
         self.given_way = 1 - share
         most = self._scale * dt
@@ -167,3 +176,9 @@ class PostureFeedback:
         climb, most = max(climb, -2 * fastest), _MOVES if self._rests else _RESTS
         self._rests = stands and abs(climb) < most[0] and math.hypot(roll, pitch) < quick * most[1]
         return PostureRates(0.0, (0.0, 0.0)) if self._rests else PostureRates(climb, (roll, pitch))
+
+
+def _heights(rises: _Ranges, reach: _Ranges, least: float) -> tuple[float, float]:
+    """Return between which heights over the ground, the least one at least, feet are between theirs [m]."""
+    most = min(rise - low for low, rise in zip(reach[0], rises[0], strict=True))
+    return max(least, *(rise - high for high, rise in zip(reach[1], rises[1], strict=True))), most

@@ -197,9 +197,8 @@ class BodyMotion:
         hanging = [leg for leg, on in enumerate(down) if on and contacts.seeks(leg) and reach.hangs(leg, over[leg])]
         stands = all(contacts.stands(leg) for leg, on in enumerate(down) if on)
         now = reach.rises(plane, over, bears=bears, hanging=hanging)
-        least, most = self.ground.rises(now, reach, looks=stands)
         lower = 0.0 if self.ground.given else _LOWER * self.roughness.value
-        rises = [rise - lower for rise in least], most
+        rises = [rise - lower for rise in now], now
         height, swing_height = state.posture.value[[2, SWING_HEIGHT]].tolist()
         level = plane.levelled(self.tilt)
         highest = reach.highest_stand(swing_height, hangs=bool(hanging))
@@ -211,4 +210,5 @@ class BodyMotion:
         rise, clearance = self.stance.underside(plane, height)
         raises = (rise - clearance, wanted)
         reached = [low + self.lowered for low in reach.lowest], highest
-        self._posture.fit_to_reach(rises, raises, dt, reach=reached, height=height, share=share)
+        ahead = self.ground.rises_ahead(reach) if stands else None
+        self._posture.fit_to_reach(rises, raises, dt, reach=reached, height=height, share=share, ahead=ahead)

@@ -38,6 +38,8 @@ _OFF = 0.03
 _CHOOSING, _CHOOSING_AGAIN = 0.3, 0.45
 # A foothold this close to a hole counts as in it [m]: farther away ones are preferred, but may be missing.
 _EDGE = 0.012
+# Slope from which on ground that falls is an edge; legs reach what is lower on less steep ground as they go down.
+_CLIFF = 1.2
 # Room of the body over the ground [m].
 _CLEAR = 0.015
 # Points under the body, over half its length and width: a little farther at front and rear.
@@ -153,7 +155,11 @@ class GroundMap:
     def expected(self, places: Shaped[np.ndarray, "..."]) -> Shaped[np.ndarray, "..."]:
         """Return the heights at which the known ground is expected at places: that of the plane in a hole [m]."""
         found, level = self._lies(places), np.asarray(self.plane.at(places))
-        return np.where(found > level - self._deepest, found, level)
+        return np.where(found > self._floor(places), found, level)
+
+    def _floor(self, places: Shaped[np.ndarray, "..."]) -> Shaped[np.ndarray, "..."]:
+        """Return the heights below which known ground is a hole at places [m]: a plane that rises raises no leg."""
+        return np.asarray(np.minimum(self.plane.at(places), self.plane.height) - self._deepest)
 
     def _lies(self, places: Shaped[np.ndarray, "..."]) -> Shaped[np.ndarray, "..."]:
         """Return the known heights at places, those of holes too, and that of the plane where nothing is known [m]."""
@@ -204,7 +210,7 @@ class GroundMap:
                 place = end + self.beside[leg]
                 if held and self.is_hole(place):
                     self.holes[leg] = end
-                if on_way(self._lies, start, place).min() < self.plane.at(place) - self._deepest:
+                if on_way(self._lies, start, place).min() < self._floor(np.array(place)):
                     self.crossing.add(leg)
 
     def is_hole(self, place: complex) -> bool:
@@ -212,7 +218,10 @@ class GroundMap:
         if not self.given:
             return False
         lowest = lowest_near(self._lies, np.array(place), within=self._scale * _EDGE)
-        return bool(lowest < self.plane.at(place) - self._deepest)
+        if lowest >= self._floor(np.array(place)):
+            return False
+        found = np.append(on_way(self._lies, 0j, place), lowest)
+        return bool((found[:-2] - found[2:]).max() > _CLIFF * abs(place) / 4)
 
     def under(
         self, start: complex, foothold: complex, elevation: float, room: tuple[float | None, float], *, clears: bool
@@ -238,20 +247,18 @@ class GroundMap:
         way = elevation + float(on_way(self.expected, start, foothold).max())
         return under._replace(way=way, steep=is_steep(self.expected, start, foothold), clears=False)
 
-    def rises(self, rises: list[float], reach: Reach, *, looks: bool = True) -> tuple[list[float], list[float]]:
-        """Return least and greatest height of the ground under each leg, now and at its next footholds [m].
+    def rises_ahead(self, reach: Reach) -> tuple[list[float], list[float]] | None:
+        """Return least and greatest height of the ground at each leg's next footholds, over the plane's height [m].
 
         Parameters
         ----------
-        rises, reach : list of float, Reach
-            The height now, over the plane's at the origin [m]; rest footholds, and strokes about them.
-        looks : bool
-            Whether to look ahead: not while a foot looks for the ground that it should stand on.
+        reach : Reach
+            Rest footholds, and strokes about them.
         """
-        if not (self.given and looks):
-            return rises, rises
+        if not self.given:
+            return None
         ahead = self.expected(reach.rest + _NEXT[:, None] * reach.strokes) - self.plane.height
-        return np.minimum(ahead.min(axis=0), rises).tolist(), np.maximum(ahead.max(axis=0), rises).tolist()
+        return ahead.min(axis=0).tolist(), ahead.max(axis=0).tolist()
 
     def body_rise(self, half: Sequence[float], height: float) -> float:
         """Return how much higher than commanded a body is that is clear of the known ground under it [m].
