@@ -28,11 +28,12 @@ from tarsus.simulation.terrain.surface import surface
 EDGES, AHEAD, BACK = (0.5, 0.53, 0.56), 0.9, 0.4
 # Shares of the top speed.
 PACES = (0.25, 0.5)
-# Half length and width, height [m], and yaw [rad]: walls that no robot climbs, and a post in the way of a middle leg.
+# Half length and width, height [m], and yaw [rad]: walls that no robot climbs, and posts in the way of a middle leg.
 OBSTACLES = {
     "wall": ((0.5, 3.0, 0.25), 0.0),
     "oblique wall": ((0.5, 3.0, 0.25), math.radians(30)),
     "post": ((0.02, 0.02, 0.08), 0.0),
+    "tall post": ((0.03, 0.03, 0.3), 0.0),
 }
 # A leg that has not touched the obstacle for longer has let go of it [s].
 _GONE = 0.03
@@ -95,11 +96,15 @@ class Job(NamedTuple):
 
 
 class Outcome(NamedTuple):
-    """What became of a walk, its greatest tilt [deg], and how soon swings that were stopped were noticed [s]."""
+    """What became of a walk.
+
+    Its greatest tilt [deg]; how soon swings that were stopped were noticed [s]; whether a servo was called failed.
+    """
 
     kind: str
     tilt: float
     noticed: list[float]
+    failed: bool
 
 
 class Touches:
@@ -159,7 +164,7 @@ def walk(job: Job) -> Outcome:
     walker = tarsus.WalkController(robot)
     speed, feet = job.pace * walker.top_speed((1, 0, 0)), walker.feet
     size, yaw = OBSTACLES[job.obstacle]
-    ground = Box(job.edge, float(feet[:, 1].max()) if job.obstacle == "post" else 0.0, size, yaw)
+    ground = Box(job.edge, float(feet[:, 1].max()) if "post" in job.obstacle else 0.0, size, yaw)
     plant = SimulatedPlant(robot, terrain=ground, sensors=SENSORS[job.sensors], servos="catalogue")
     controller, touches = tarsus.RobotController(robot), Touches(robot, plant, ground)
     output, dt, tilt, named = controller.output, DT, 0.0, False
@@ -186,18 +191,19 @@ def walk(job: Job) -> Outcome:
                 ahead = float(ground.ahead(*plant.state.body.position[:2]).real)
                 furthest = max(furthest, ahead)
                 named = named or any(limit.leg and "higher than" in str(limit.cause) for limit in output.limitations)
+    failed = bool(controller.leg_failures.failed)
     if furthest > 0.1:
-        return Outcome("passed", tilt, touches.noticed)
+        return Outcome("passed", tilt, touches.noticed, failed)
     kind = f"{'named the leg' if named else 'said nothing'}, {'back' if ahead < furthest - BACK / 4 else 'stayed'}"
-    return Outcome(kind, tilt, touches.noticed)
+    return Outcome(kind, tilt, touches.noticed, failed)
 
 
 def table(outcomes: dict[Job, Outcome]) -> str:
     """Return how often each robot did what, and what it noticed."""
     kinds = sorted({outcome.kind for outcome in outcomes.values()})
     lines = [
-        f"| walk | {' | '.join(kinds)} | tilt | stopped | noticed | after: median, 90 % |",
-        f"|---|{'---|' * (len(kinds) + 4)}",
+        f"| walk | {' | '.join(kinds)} | tilt | failed | stopped | noticed | after: median, 90 % |",
+        f"|---|{'---|' * (len(kinds) + 5)}",
     ]
     for key in dict.fromkeys(job[:3] for job in outcomes):
         found = [outcome for job, outcome in outcomes.items() if job[:3] == key]
@@ -205,9 +211,9 @@ def table(outcomes: dict[Job, Outcome]) -> str:
         stopped = [1e3 * time for each in found for time in each.noticed]
         times = sorted(time for time in stopped if not math.isnan(time))
         late = f"{median(times):.0f}, {times[math.ceil(0.9 * len(times)) - 1]:.0f} ms" if times else "-"
-        tilt = median(each.tilt for each in found)
+        tilt, failed = median(each.tilt for each in found), sum(each.failed for each in found)
         name = f"{key[0]}, {key[2]}, {key[1]}"
-        lines.append(f"| {name} | {counts} | {tilt:.0f} deg | {len(stopped)} | {len(times)} | {late} |")
+        lines.append(f"| {name} | {counts} | {tilt:.0f} deg | {failed} | {len(stopped)} | {len(times)} | {late} |")
     return "\n".join(lines)
 
 

@@ -6,10 +6,10 @@ FEET = [0.27 + 0.15j, 0.31j, -0.27 + 0.15j, -0.27 - 0.15j, -0.31j, 0.27 - 0.15j]
 STANDING = Footing(FEET, [True] * 6, 0j, 0.1)
 
 
-def take_in(contacts, readings, down, dt, *, count=1, leaving=None, rests=False, carried=False):
-    """Take in contacts of feet none of which lifts off soon, of a robot that walks."""
-    leaving = [False] * len(down) if leaving is None else leaving
-    contacts.step(readings, down, dt, count=count, leaving=leaving, rests=rests, carried=carried)
+def take_in(contacts, readings, down, dt, *, count=1, lands=None, leaving=None, rests=False, carried=False):
+    """Take in contacts of feet none of which lifts off soon or passes an obstacle, of a robot that walks."""
+    lands, leaving = down if lands is None else lands, [False] * len(down) if leaving is None else leaving
+    contacts.step(readings, down, dt, count=count, lands=lands, leaving=leaving, rests=rests, carried=carried)
 
 
 def find_open(contacts, footing, tilt, dt, *, low=None, depths=None):

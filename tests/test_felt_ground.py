@@ -128,6 +128,16 @@ def test_the_body_fits_itself_to_the_reach_and_gives_way_where_it_cannot():
     assert posture.given_way == pytest.approx(0.3)
 
 
+def test_the_body_fits_itself_to_the_next_footholds_as_far_as_its_feet_keep_the_ground():
+    level, reach = ([0.0] * 6, [0.0] * 6), ([-0.06] * 6, [0.04] * 6)
+    for ahead, raised in ((0.05, 0.01), (-0.07, -0.01), (0.12, 0.06), (-0.14, -0.04)):
+        posture, next_ones = PostureFeedback("level"), ([ahead] * 6, [ahead] * 6)
+        for _ in range(300):
+            posture.fit_to_reach(level, (-1.0, 0.0), 0.02, reach=reach, height=0.2, share=1.0, ahead=next_ones)
+        # At 120 mm and -140 mm the next footholds would need 80 mm.
+        assert posture.raised == pytest.approx(raised, abs=1e-6)
+
+
 def test_what_a_leg_reaches_is_what_kinematics_says():
     controller = WalkController(STRIDER)
     posture, rest = controller._tick.gait.posture.value, controller._tick.gait.foot
@@ -541,6 +551,14 @@ def test_a_walk_by_estimated_contacts_does_not_go_on_over_an_edge_at_which_it_ha
     for _ in range(3):
         controller.step((-0.1, 0.0, 0.0), 0.01, readings=readings)
     assert not ground.missing.refuses
+
+
+def test_a_foot_on_its_way_past_an_obstacle_does_not_look_for_the_ground_yet():
+    contacts = FootContacts(2)
+    for lands, seeks in ((False, True), (True, False)):
+        for _ in range(200):
+            take_in(contacts, [False, True], [True, True], 0.01, lands=[lands, True])
+        assert contacts.seeks(0) == seeks
 
 
 def test_a_switch_that_stays_open_is_told_by_the_feet_that_its_foot_lifts_off():

@@ -39,13 +39,10 @@ __all__ = ["FeltGround"]
 _DEPTH_SHARE, _ROUGH = 0.6, 0.006
 # How soon feet lift off that are not lowered any more [s].
 _LEAVING = 0.1
-# Speed with which feet look for the ground while others hold a robot that stands [m/s], and how far below the expected
-# ground [m]: faster or lower ones push the body off the others.
+# Of feet that look for the ground while others hold a standing robot: speed, depth below the expected ground [m/s, m].
 _GENTLE, _NEAR = 0.02, 0.004
 # A foot that goes down faster has not come to the end of its reach, which sinks with the body [m/s].
 _FALLS = 0.1
-# How far a foot whose joint angles are not measured is off its command [m].
-_AS_COMMANDED = (0.0, 0.0, 0.0)
 
 
 class FeltGround:
@@ -111,7 +108,9 @@ class FeltGround:
         """
         valid = self.measured = self.readings.step(readings, angles, dt, lag=self._swings.lag)
         down, self._commanded = state.down.tolist(), angles
-        stopped = self._swings.step(angles[:, 0].tolist(), valid, dt, down)
+        # A foot that is to get past an obstacle swings, too.
+        lands = [on and not self.missing.obstacles.tries(leg) for leg, on in enumerate(down)]
+        stopped = self._swings.step(angles[:, 0].tolist(), valid, dt, lands)
         measured = self._loads.contacts(valid, angles, state, dt)
         if not state.felt:
             if measured is None and valid.attitude is None:
@@ -131,16 +130,14 @@ class FeltGround:
         self.contacts.estimated = self._loads.estimated
         leaving, carried = timing.due(state, _LEAVING), self.condition.carried
         rests = self._rests and self.support.held
-        self.contacts.step(measured, down, dt, count=ticks, leaving=leaving, rests=rests, carried=carried)
+        self.contacts.step(measured, down, dt, count=ticks, lands=lands, leaving=leaving, rests=rests, carried=carried)
         self.condition.step([*map(self.contacts.touches, range(len(down)))], valid.attitude, dt, held=self.support.held)
         self.offsets = self._loads.offsets(valid, angles, state, dt, out=self._given[0])
         if self.missing.stranded and all(down):
             state = timing.with_first_lift(state, self.missing.stranded[0])
         pace = self.support.pace
-        error = partial(self.body.odometry.tracking_error, valid, angles, state.yaw + float(state.moved_posture[5]))
-        state, landed = met_ground(
-            state, self.body, self.missing, stopped=stopped, error=error, timing=timing, pace=pace
-        )
+        off = partial(self.body.odometry.tracking_error, valid, angles, state.yaw + float(state.moved_posture[5]))
+        state, landed = met_ground(state, self.body, self.missing, stopped=stopped, error=off, timing=timing, pace=pace)
         if self.missing.tips or self.condition.carried or (self.missing.refuses and self.support.halts):
             state, swung = put_down(state, timing=timing, pace=pace)
             landed += swung
@@ -261,7 +258,7 @@ class FeltGround:
         for leg in legs:
             place, foot = footing.places[leg], state.felt[leg]
             depth = self.ground.lowest_near(place) + state.elevation - float(state.ground_height[leg])
-            known = foot.speed < -_FALLS, contacts.seeks(leg), contacts.sunk[leg], off.get(leg, _AS_COMMANDED)[2]
+            known = foot.speed < -_FALLS, contacts.seeks(leg), contacts.sunk[leg], off[leg][2] if leg in off else 0.0
             found.append(Search(leg, depth, *known, sunk_at(place, self.body.off)))
         return found
 

@@ -88,6 +88,7 @@ class FootContacts:
         dt: float,
         *,
         count: int,
+        lands: Sequence[bool],
         leaving: Sequence[bool],
         rests: bool,
         carried: bool,
@@ -102,6 +103,8 @@ class FootContacts:
             Which feet should stand.
         dt, count : float, int
             Time since the last tick [s]; number of ticks.
+        lands : sequence of bool
+            Which of them are not on their way past an obstacle: these do not look for the ground yet.
         leaving : sequence of bool
             Which feet are to lift off soon: once these have stood, they are not lowered where others take their load.
         rests : bool
@@ -130,7 +133,7 @@ class FootContacts:
             stays = rests or (leaves and self._without[leg] < _LEAVES)
             self.standing[leg] = self._bears(leg) or (stays and self._settled[leg] > _SETTLED)
             # Feet of a robot that rests are hardly lowered, those of one that is carried find nothing: they wait.
-            searches = on and not (rests or carried or self.standing[leg])
+            searches = lands[leg] and not (rests or carried or self.standing[leg])
             self._searched[leg] = (self._searched[leg] + dt) * searches
         self._down = down
 
