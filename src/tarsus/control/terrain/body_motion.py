@@ -4,6 +4,9 @@ from __future__ import annotations
 
 import cmath
 import math
+from typing import TYPE_CHECKING
+
+import numpy as np
 
 from tarsus.control.limitation import Limitation, LimitationKind
 from tarsus.control.limiter.stopped_body import StoppedBody
@@ -17,13 +20,16 @@ from tarsus.control.terrain.ground_map import GroundMap
 from tarsus.control.terrain.reach import Reach
 from tarsus.control.terrain.roughness import GroundAdaptation, Roughness
 from tarsus.control.terrain.slope_limit import SlopeLimit
-from tarsus.control.terrain.support import Footing, off_commanded
+from tarsus.control.terrain.support import Footing, Sinking, off_commanded, sunk_at
 from tarsus.control.transition.executor import TransitionExecutor
 from tarsus.control.walk.state import PHASE_TOLERANCE, GaitState
 from tarsus.control.walk_state import TickState
 from tarsus.gait.stance.reachable_heights import reachable_share
 from tarsus.gait.stance.stance_geometry import SWING_HEIGHT
 from tarsus.robot.robot import Robot
+
+if TYPE_CHECKING:
+    from jaxtyping import Float
 
 __all__ = ["BodyMotion"]
 
@@ -35,6 +41,8 @@ _HOLDS, _TIMEOUT = 0.15, 2.0
 _TURNED = math.radians(0.1)
 # How much lower the next footholds may be than the ground that is felt, over the roughness.
 _LOWER = 0.5
+# More feet hold a robot without one of them.
+_FEW = 4
 
 
 class BodyMotion:
@@ -80,7 +88,7 @@ class BodyMotion:
         self.stopped = StoppedBody(robot)
         self.rates, self.drift, self.lowered = PostureRates(0.0, (0.0, 0.0)), 0j, 0.0
         self.tilt: RollPitch | None = None
-        self.heading = HeadingFeedback()
+        self.heading, self._sinking = HeadingFeedback(), Sinking(scale)
         # What the body did when it was looked at, until it is turned by a newer attitude.
         self._move: BodyMove | None = None
         self.since, self._unmeasured = _PERIOD, 0.0
@@ -179,6 +187,27 @@ class BodyMotion:
         margins = [(places[leg], over[leg] - (self.reach.lowest[leg] + self.lowered)) for leg in bears]
         self._move = BodyMove(velocity, margins, self.slope.refuses or rests, pace)
         self.rates = self._posture.rates(self.ground.plane, self.tilt, self._move)
+
+    def sinks_at(
+        self, state: GaitState, footing: Footing, valid: ValidReadings, angles: Float[np.ndarray, "legs 3"], dt: float
+    ) -> int | None:
+        """Return the leg of a foot that bears load and sinks, where the heights of all such feet are measured.
+
+        Parameters
+        ----------
+        state, footing, valid : GaitState, Footing, ValidReadings
+            The gait state; the feet; the readings.
+        angles, dt : array of shape (legs, 3), float
+            Joint angles that are commanded [rad]; time since the last call [s].
+        """
+        heights = dict[int, float]()
+        bears = [leg for leg, on in enumerate(footing.down) if on and self.contacts.touches(leg)]
+        off = self.odometry.feet_off_commanded(bears if len(bears) <= _FEW else [], valid, angles)
+        if valid.attitude is not None and len(off) == len(bears) and valid.predicted.isdisjoint(bears):
+            tilt, commanded = off_commanded(valid.attitude, state), state.ground_height.tolist()
+            for leg, (x, y, z) in off.items():
+                heights[leg] = commanded[leg] + z - sunk_at(footing.places[leg] + complex(x, y), tilt)
+        return self._sinking.step(heights, footing, dt, deeper=self.roughness.deeper)
 
     def _commanded(self, state: GaitState, velocity: complex, dt: float) -> tuple[CommandedMotion, float]:
         """Return how the body was to move since the last look, and how fast it was to turn [rad/s]."""

@@ -245,6 +245,8 @@ class FeltGround:
             missing.lost = self._tipping.leg if missing.lost is None else missing.lost
             if missing.lost is not None and self._tipping.at_edge:
                 missing.tipped(missing.lost, footing.places[missing.lost])
+        elif missing.lost is None:
+            missing.lost = self.body.sinks_at(state, footing, self.measured, self._commanded, dt)
         footing = footing._replace(down=[on and stand for on, stand in zip(footing.down, stands, strict=True)])
         missing.step(searches, footing, dt, footholds=footholds, deeper=deeper, age=contacts.age)
         self.body.roughness.at_edge(missing.edge)

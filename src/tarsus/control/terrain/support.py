@@ -23,6 +23,10 @@ _LEAST_ANGLE = 0.02
 # How far a body sinks at a foot that gives way, at least [m], within which time [s]; how far below the expected ground
 # such a foot is [m]; for how long a robot has tipped that is at the edge of a hole, at least [s].
 _SINKS, _FOLLOWED, _LOW, _LASTS = 0.015, 0.6, 0.008, 0.2
+# How far a foot that bears load sinks against the others that slides over an edge, at least [m], besides so many times
+# the usual change between two looks, that at first [m], and so much of how much deeper ground may be; how fast feet
+# sink that roll or slip on slopes [m/s]; how fast the usual change is learnt [1/s].
+_SLIDES, _TIMES, _AT_FIRST, _DEEPER, _ROLLS, _LEARNT = 0.003, 4.0, 0.01, 0.5, 0.02, 3.0
 HALTING = 0.5
 """Below this pace the robot waits for support."""
 
@@ -171,6 +175,46 @@ class Tipping:
         elif low:
             deepest = max(low, key=sunk.__getitem__)
             self.leg = deepest if sunk[deepest] > self._scale * _SINKS else None
+
+
+class Sinking:
+    """Finds a foot that bears load and sinks against the others: it slides over an edge, its switch still closed.
+
+    Parameters
+    ----------
+    scale : float
+        By how much lengths are smaller than given, on short legs, 0 to 1.
+    """
+
+    def __init__(self, scale: float) -> None:
+        self._scale, self._usual = scale, _AT_FIRST
+        # How much higher than the mean of the others each foot is, and was at most since the same feet bear load [m].
+        self._over, self._highest = dict[int, float](), dict[int, float]()
+
+    def step(self, heights: dict[int, float], footing: Footing, dt: float, *, deeper: float) -> int | None:
+        """Return the leg of a foot that sinks, without which the others do not hold the robot.
+
+        Parameters
+        ----------
+        heights : dict of int to float
+            How high the feet are that bear load, by leg, along gravity [m].
+        footing, dt, deeper : Footing, float, float
+            The feet; time since the last call [s]; how much deeper ground may be than expected [m].
+        """
+        others, total, before = max(len(heights) - 1, 1), sum(heights.values()), self._over
+        self._over = over = {leg: height - (total - height) / others for leg, height in heights.items()}
+        if over.keys() != before.keys() or len(over) < 3:
+            self._highest = over
+            return None
+        change = sum(abs(over[leg] - before[leg]) for leg in over) / len(over)
+        self._highest = {leg: max(high - _ROLLS * dt, over[leg]) for leg, high in self._highest.items()}
+        leg = max(over, key=lambda leg: self._highest[leg] - over[leg])
+        most = self._scale * _SLIDES + _TIMES * self._usual + _DEEPER * deeper
+        if self._highest[leg] - over[leg] > most:
+            left = [footing.places[other] for other in over if other != leg]
+            return None if holds(left, footing.centre) else leg
+        self._usual += min(_LEARNT * dt, 1.0) * (change - self._usual)
+        return None
 
 
 class Support:
