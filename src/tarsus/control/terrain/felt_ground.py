@@ -108,9 +108,9 @@ class FeltGround:
         """
         valid = self.measured = self.readings.step(readings, angles, dt, lag=self._swings.lag)
         down, self._commanded = state.down.tolist(), angles
-        # A foot that is to get past an obstacle swings, too.
+        # Without torques, a servo that pushes on as its foot is to get past an obstacle looks like one that has failed.
         lands = [on and not self.missing.obstacles.tries(leg) for leg, on in enumerate(down)]
-        stopped = self._swings.step(angles[:, 0].tolist(), valid, dt, lands)
+        stopped = self._swings.step(angles[:, 0].tolist(), valid, dt, down if valid.torques else lands)
         measured = self._loads.contacts(valid, angles, state, dt)
         if not state.felt:
             if measured is None and valid.attitude is None:

@@ -38,6 +38,8 @@ _HIGH = 0.03
 # A foot without contact is no support where the body is lower than in its attitude by more, nor one whose rest foothold
 # is farther ahead: others have not been there [m].
 _SINKS, _AHEAD = 0.01, 0.03
+# How far a foot is behind its command that an obstacle stops again, by its coxa, on its way past it [m].
+_PUSHES = 0.03
 
 
 def met_ground(
@@ -204,7 +206,8 @@ def _stopped_again(
 ) -> GaitState:
     """Return the state with a foot that meets an obstacle as it steps past it; its switch may stay closed."""
     foot = state.felt[leg]
-    if foot.top > float(state.ground_height[leg]) or foot.slide:
+    pushes = body.contacts.feels(leg) or abs(error) > body.reach.scale * _PUSHES
+    if foot.top > float(state.ground_height[leg]) or foot.slide or not pushes:
         return state
     body.contacts.draws_back(leg)
     if body.contacts.is_closed(leg) and not stopped:
