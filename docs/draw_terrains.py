@@ -15,7 +15,7 @@ from tarsus.report.sample import sample_of
 from tarsus.report.style import INK, new_figure
 from tarsus.report.view import View
 from tarsus.simulation import SimulatedPlant
-from tarsus.simulation.terrain import Blocks, Flat, Gaps, HeightField, Ramp, Smooth, Stairs, Step, Terrain
+from tarsus.simulation.terrain import Blocks, Box, Flat, Gaps, HeightField, Ramp, Smooth, Stairs, Step, Terrain
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -35,6 +35,7 @@ _TERRAINS: dict[str, Terrain] = {
     "Blocks(rise=0.04, seed=1)": Blocks(seed=1),
     "Smooth(amplitude=0.05, clear=0.3)": Smooth(amplitude=0.05, clear=0.3),
     "Gaps(depth=0.1)": Gaps(depth=0.1),
+    "Box(length=0.2, yaw=radians(30))": Box(length=0.2, yaw=np.radians(30)),
     "HeightField(heights, size=(4, 4))": HeightField(
         heights=0.15 * np.exp(-(((_CRATER - 0.55) / 0.12) ** 2)), size=(4.0, 4.0)
     ),

@@ -8,12 +8,11 @@ from __future__ import annotations
 import argparse
 import itertools
 import math
-from dataclasses import dataclass
+from dataclasses import replace
 from statistics import median
 from typing import Any, NamedTuple
 from unittest.mock import patch
 
-import mujoco
 import numpy as np
 
 import tarsus
@@ -22,18 +21,18 @@ from rough_ground import PAGE, ROBOTS
 from tarsus.control.terrain import ground_contact
 from tarsus.simulation import SensorSuite, SimulatedPlant, terrain
 from tarsus.simulation.sensors.suite import FootSwitch, Sensor
-from tarsus.simulation.terrain.surface import surface
 
 # Where obstacles begin, and what is walked ahead and back [m].
 EDGES, AHEAD, BACK = (0.5, 0.53, 0.56), 0.9, 0.4
 # Shares of the top speed.
 PACES = (0.25, 0.5)
-# Half length and width, height [m], and yaw [rad]: walls that no robot climbs, and posts in the way of a middle leg.
+# Walls that no robot climbs, and posts, which are put in the way of a middle leg.
+_WALL = terrain.Box(length=1.0, width=6.0, rise=0.25)
 OBSTACLES = {
-    "wall": ((0.5, 3.0, 0.25), 0.0),
-    "oblique wall": ((0.5, 3.0, 0.25), math.radians(30)),
-    "post": ((0.02, 0.02, 0.08), 0.0),
-    "tall post": ((0.03, 0.03, 0.3), 0.0),
+    "wall": _WALL,
+    "oblique wall": replace(_WALL, yaw=math.radians(30)),
+    "post": terrain.Box(length=0.04, width=0.04, rise=0.08),
+    "tall post": terrain.Box(length=0.06, width=0.06, rise=0.3),
 }
 # A leg that has not touched the obstacle for longer has let go of it [s].
 _GONE = 0.03
@@ -49,40 +48,6 @@ SENSORS = {
         name="angles", contacts=FootSwitch(), attitude=Sensor(), joint_angles=Sensor()
     ),
 }
-
-
-@dataclass(frozen=True)
-class Box:
-    """A box on level ground: middle of its near face, its direction, half its length and width, its height."""
-
-    x: float
-    y: float
-    size: tuple[float, float, float]
-    yaw: float = 0.0
-    friction: float = 0.8
-
-    def ahead(self, x: Any, y: Any) -> Any:
-        """Return how far a place is ahead of the near face, and to its left, as a complex number [m]."""
-        return (np.asarray(x) - self.x + 1j * (np.asarray(y) - self.y)) * np.exp(-1j * self.yaw)
-
-    def height(self, x: Any, y: Any) -> np.ndarray:
-        """Return the height of the ground [m]."""
-        place, (length, width, height) = self.ahead(x, y), self.size
-        inside = (np.abs(place.real - length) < length) & (np.abs(place.imag) < width)
-        return np.where(inside, height, 0.0)
-
-    def add_to(self, spec: Any) -> None:
-        """Add the ground to a model."""
-        terrain.Flat(friction=self.friction).add_to(spec)
-        length, width, height = self.size
-        middle = complex(self.x, self.y) + length * np.exp(1j * self.yaw)
-        box = {
-            "type": mujoco.mjtGeom.mjGEOM_BOX,
-            "size": (length, width, height / 2),
-            "pos": (middle.real, middle.imag, height / 2),
-            "quat": (math.cos(self.yaw / 2), 0.0, 0.0, math.sin(self.yaw / 2)),
-        }
-        spec.worldbody.add_geom(name="ground 1", **box, **surface(self.friction))
 
 
 class Job(NamedTuple):
@@ -114,7 +79,7 @@ class Touches:
     noticed as the foot rises again, tries again, or is put down; before that, at once.
     """
 
-    def __init__(self, robot: tarsus.Robot, plant: SimulatedPlant, ground: Box) -> None:
+    def __init__(self, robot: tarsus.Robot, plant: SimulatedPlant, ground: terrain.Box) -> None:
         self._robot, self._plant, self._ground = robot, plant, ground
         self.reacted, self.noticed, self._done = set[int](), list[float](), set[int]()
         self._touched, self._stopped, self._behind = dict[int, float](), dict[int, float](), dict[int, float]()
@@ -152,7 +117,7 @@ class Touches:
         data, model, found = self._plant.mj_data, self._plant.mj_model, set[int]()
         for number, pair in enumerate(data.contact.geom.tolist()):
             names = [model.geom(geom).name for geom in pair]
-            if "ground 1" in names and abs(float(data.contact.frame[number, 2])) < 0.7:
+            if "box" in names and abs(float(data.contact.frame[number, 2])) < 0.7:
                 legs = enumerate(self._robot.leg_names)
                 found |= {leg for leg, name in legs if any(part.startswith(name) for part in names)}
         return found
@@ -163,8 +128,8 @@ def walk(job: Job) -> Outcome:
     robot = tarsus.load_robot(job.robot)
     walker = tarsus.WalkController(robot)
     speed, feet = job.pace * walker.top_speed((1, 0, 0)), walker.feet
-    size, yaw = OBSTACLES[job.obstacle]
-    ground = Box(job.edge, float(feet[:, 1].max()) if "post" in job.obstacle else 0.0, size, yaw)
+    aside = float(feet[:, 1].max()) if "post" in job.obstacle else 0.0
+    ground = replace(OBSTACLES[job.obstacle], start=job.edge, aside=aside)
     plant = SimulatedPlant(robot, terrain=ground, sensors=SENSORS[job.sensors], servos="catalogue")
     controller, touches = tarsus.RobotController(robot), Touches(robot, plant, ground)
     output, dt, tilt, named = controller.output, DT, 0.0, False

@@ -137,7 +137,7 @@ def simulation_values():
     yield from (truth, truth.trace, truth.outcome)
     yield from (simulation.SensorSuite(), simulation.Sensor(), simulation.FootSwitch())
     yield from (terrain.Blocks(), terrain.Flat(), terrain.Gaps(), terrain.Ramp(slope=0.1), terrain.Smooth())
-    yield from (terrain.Stairs(rise=0.02), terrain.Step(rise=0.02))
+    yield from (terrain.Box(), terrain.Stairs(rise=0.02), terrain.Step(rise=0.02))
     yield terrain.HeightField(heights=np.eye(50), size=(1.0, 1.0))
 
 

@@ -10,7 +10,7 @@ import pytest
 from PIL import Image
 
 from tarsus.errors import InputError, TarsusError
-from tarsus.simulation.terrain import Blocks, Flat, Gaps, HeightField, Ramp, Smooth, Stairs, Step, Terrain
+from tarsus.simulation.terrain import Blocks, Box, Flat, Gaps, HeightField, Ramp, Smooth, Stairs, Step, Terrain
 from tarsus.simulation.terrain.solids import terrain_solids
 
 GRID = np.random.default_rng(0).random((7, 5)) * 0.05
@@ -24,6 +24,8 @@ TERRAINS = [
     Stairs(rise=-0.02, tread=0.1, steps=7, start=0.0),
     Gaps(),
     Blocks(clear=0.2),
+    Box(length=0.5, width=1.0, start=-0.2, aside=0.4),
+    Box(rise=0.3, length=1.5, width=0.7, yaw=-0.6),
     Smooth(clear=0.3),
     Smooth(seed=3, amplitude=0.05, wavelength=0.8),
     HeightField(heights=GRID, size=(3.0, 2.0)),
@@ -145,6 +147,10 @@ def test_a_picture_that_cannot_be_read_is_refused(tmp_path, monkeypatch):
         (lambda: Step(rise=0.1, start=-50), "the step goes from -50 to -50 m; the ground goes from -50 to 50 m"),
         (lambda: Step(rise=0.1, start=math.nan), "the step goes from nan to nan m"),
         (lambda: Gaps(width=0.4, spacing=0.4), "width is 0.4 m; it must be less than the spacing, 0.4 m"),
+        (lambda: Box(rise=0.0), "rise is 0"),
+        (lambda: Box(yaw=math.inf), "yaw is inf deg; it must be a finite number"),
+        (lambda: Box(length=60), "the box goes from 0.5 to 60.5 m; the ground goes from -50 to 50 m"),
+        (lambda: Box(aside=50), "the box goes sideways from 49.97 to 50.03 m; the ground goes from -50 to 50 m"),
         (lambda: Blocks(size=0.01), "takes 160000 blocks of 0.01 m; there may be 1 to 4096"),
         (lambda: Blocks(size=9.0), "takes 0 blocks"),
         (lambda: Blocks(clear=-1), "clear is -1"),

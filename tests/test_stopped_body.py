@@ -2,7 +2,6 @@
 
 from types import SimpleNamespace
 
-import mujoco
 import numpy as np
 import pytest
 
@@ -18,20 +17,6 @@ STRIDER = tarsus.load_robot("strider")
 ANGLES = tarsus.WalkController(STRIDER).angles
 WEIGHT = float(total_mass(STRIDER)) * STANDARD_GRAVITY
 DT = 0.04
-
-
-class Pole:
-    """Level ground with a pole between the left and the right legs."""
-
-    friction = 0.8
-
-    def height(self, x, _y):
-        return np.zeros(np.shape(x))
-
-    def add_to(self, spec):
-        terrain.Flat().add_to(spec)
-        box = {"type": mujoco.mjtGeom.mjGEOM_BOX, "size": (0.02, 0.02, 0.15), "pos": (0.18, 0.0, 0.15)}
-        spec.worldbody.add_geom(name="ground 1", **box)
 
 
 def pushed(force, tilt=(0.0, 0.0), velocity=0.1 + 0j, seconds=5.0, torques=True, yaw=0.0):
@@ -100,7 +85,7 @@ def test_without_torques_or_masses_and_without_a_way_nothing_is_found():
 
 @pytest.mark.no_cover
 def test_a_robot_whose_body_meets_a_pole_says_so_stops_and_walks_back():
-    plant = SimulatedPlant(STRIDER, terrain=Pole())
+    plant = SimulatedPlant(STRIDER, terrain=terrain.Box(start=0.16, length=0.04, width=0.04, rise=0.3))
     controller, dt, said, way = tarsus.RobotController(STRIDER), 0.01, set(), []
     plant.start(controller.output)
     for twist, seconds in ((0.15, 7.0), (-0.15, 1.5)):

@@ -9,7 +9,7 @@ import pytest
 from PIL import Image
 
 from tarsus.errors import InputError, UnknownNameError
-from tarsus.simulation.terrain import Blocks, Flat, Gaps, Ramp, Smooth, Stairs, Step
+from tarsus.simulation.terrain import Blocks, Box, Flat, Gaps, Ramp, Smooth, Stairs, Step
 from tarsus.simulation.terrain.from_text import terrain_from_text, terrain_help
 from tarsus.simulation.terrain.kinds import TERRAINS, terrain_of, terrain_parameters
 
@@ -24,6 +24,7 @@ from tarsus.simulation.terrain.kinds import TERRAINS, terrain_of, terrain_parame
         ("stairs:rise=10,steps=3,tread=200", Stairs(rise=0.01, steps=3, tread=0.2)),
         ("blocks:rise=20, seed=4", Blocks(rise=0.02, seed=4)),
         ("smooth:amplitude=12,wavelength=500", Smooth(amplitude=0.012, wavelength=0.5)),
+        ("box:rise=300,aside=-170,yaw=90", Box(rise=0.3, aside=-0.17, yaw=math.pi / 2)),
         ("gaps:width=30,count=2,friction=0.5", Gaps(width=0.03, count=2, friction=0.5)),
     ],
 )
@@ -63,6 +64,7 @@ def test_what_is_wrong_is_named(text, error, message):
 def test_the_help_has_every_kind():
     lines = terrain_help().splitlines()
     assert [line.partition(":")[0] for line in lines] == [*TERRAINS, "FILE.png"]
+    assert "box: rise, length, width, start, aside, yaw, friction" in lines
     assert "gaps: width, spacing, count, depth, start, friction" in lines
 
 
@@ -71,7 +73,7 @@ def test_parameters_have_the_values_of_the_terrain_in_mm_and_degrees(kind):
     parameters = terrain_parameters(kind)
     given = {parameter.name: parameter.default for parameter in parameters}
     assert terrain_of(kind, given) == terrain_of(kind, {}) == terrain_from_text(kind)
-    assert {parameter.name for parameter in parameters if parameter.unit == "deg"} <= {"slope"}
+    assert {parameter.name for parameter in parameters if parameter.unit == "deg"} <= {"slope", "yaw"}
     assert {parameter.name for parameter in parameters if parameter.whole} <= {"seed", "steps", "count"}
 
 

@@ -893,7 +893,7 @@ export interface StudioState {
 
 /** Choice of the terrain. */
 export interface TerrainChoice {
-  kind: "flat" | "ramp" | "step" | "stairs" | "blocks" | "smooth" | "gaps";
+  kind: "flat" | "ramp" | "step" | "stairs" | "blocks" | "smooth" | "gaps" | "box";
   /** Parameters of the kind [mm, deg]; those left out have their default. */
   values: Record<string, number>;
 }
@@ -910,7 +910,7 @@ export interface TerrainField {
 
 /** A kind of terrain. */
 export interface TerrainKind {
-  kind: "flat" | "ramp" | "step" | "stairs" | "blocks" | "smooth" | "gaps";
+  kind: "flat" | "ramp" | "step" | "stairs" | "blocks" | "smooth" | "gaps" | "box";
   parameters: TerrainParameterRange[];
 }
 
@@ -918,7 +918,7 @@ export interface TerrainKind {
 export interface TerrainMessage {
   id: number;
   type: "terrain";
-  kind: "flat" | "ramp" | "step" | "stairs" | "blocks" | "smooth" | "gaps";
+  kind: "flat" | "ramp" | "step" | "stairs" | "blocks" | "smooth" | "gaps" | "box";
   friction: number;
   /** Whether there is level ground without end at height 0. */
   level: boolean;

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from tarsus.simulation.terrain.blocks import Blocks
+from tarsus.simulation.terrain.box import Box
 from tarsus.simulation.terrain.flat import Flat
 from tarsus.simulation.terrain.gaps import Gaps
 from tarsus.simulation.terrain.height_field import HeightField
@@ -12,4 +13,4 @@ from tarsus.simulation.terrain.smooth import Smooth
 from tarsus.simulation.terrain.stairs import Stairs
 from tarsus.simulation.terrain.step import Step
 
-__all__ = ["Blocks", "Flat", "Gaps", "HeightField", "Ramp", "Smooth", "Stairs", "Step", "Terrain"]
+__all__ = ["Blocks", "Box", "Flat", "Gaps", "HeightField", "Ramp", "Smooth", "Stairs", "Step", "Terrain"]

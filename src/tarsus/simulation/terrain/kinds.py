@@ -9,6 +9,7 @@ from typing import Any, NamedTuple
 
 from tarsus.errors import InputError, UnknownNameError
 from tarsus.simulation.terrain.blocks import Blocks
+from tarsus.simulation.terrain.box import Box
 from tarsus.simulation.terrain.flat import Flat
 from tarsus.simulation.terrain.gaps import Gaps
 from tarsus.simulation.terrain.protocol import Terrain
@@ -27,6 +28,7 @@ TERRAINS: dict[str, Any] = {
     "blocks": Blocks,
     "smooth": Smooth,
     "gaps": Gaps,
+    "box": Box,
 }
 """Kinds of terrain by name."""
 
@@ -132,4 +134,4 @@ def si_value(name: str, value: float) -> float:
 
 
 def _unit(name: str) -> str:
-    return "" if name in _PLAIN else "deg" if name == "slope" else "mm"
+    return "" if name in _PLAIN else "deg" if name in ("slope", "yaw") else "mm"

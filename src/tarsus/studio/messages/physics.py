@@ -21,7 +21,7 @@ __all__ = [
     "TerrainParameterRange",
 ]
 
-TerrainName: TypeAlias = Literal["flat", "ramp", "step", "stairs", "blocks", "smooth", "gaps"]
+TerrainName: TypeAlias = Literal["flat", "ramp", "step", "stairs", "blocks", "smooth", "gaps", "box"]
 
 
 class TerrainChoice(Part):

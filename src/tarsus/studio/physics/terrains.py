@@ -36,6 +36,8 @@ _RANGES: dict[str, tuple[float, float, float]] = {
     "rise": (-60, 60, 1),
     "start": (-1000, 2000, 10),
     "length": (100, 4000, 50),
+    "aside": (-500, 500, 10),
+    "yaw": (-90, 90, 1),
     "tread": (100, 600, 10),
     "steps": (1, 20, 1),
     "count": (1, 20, 1),
@@ -49,7 +51,10 @@ _RANGES: dict[str, tuple[float, float, float]] = {
     "depth": (10, 500, 10),
     "seed": (0, 99, 1),
 }
-_OF_BLOCKS = {"rise": (1.0, 80.0, 1.0)}
+_OF_KIND: dict[str, dict[str, tuple[float, float, float]]] = {
+    "blocks": {"rise": (1, 80, 1)},
+    "box": {"rise": (5, 500, 5), "length": (10, 2000, 10), "width": (10, 2000, 10)},
+}
 
 
 def physics_offer() -> PhysicsOffer:
@@ -64,8 +69,7 @@ def physics_offer() -> PhysicsOffer:
 
 
 def _ranged(kind: str, parameter: TerrainParameter) -> TerrainParameterRange:
-    ranges = _RANGES | _OF_BLOCKS if kind == "blocks" else _RANGES
-    least, most, step = ranges[parameter.name]
+    least, most, step = (_RANGES | _OF_KIND.get(kind, {}))[parameter.name]
     return TerrainParameterRange(
         name=parameter.name,
         unit=parameter.unit,  # type: ignore[arg-type] # one of the units
