@@ -35,7 +35,7 @@ _TERRAINS: dict[str, Terrain] = {
     "Blocks(rise=0.04, seed=1)": Blocks(seed=1),
     "Smooth(amplitude=0.05, clear=0.3)": Smooth(amplitude=0.05, clear=0.3),
     "Gaps(depth=0.1)": Gaps(depth=0.1),
-    "Box(length=0.2, yaw=radians(30))": Box(length=0.2, yaw=np.radians(30)),
+    "Box(width=0.3, length=0.2, aside=0.1)": Box(width=0.3, length=0.2, aside=0.1),
     "HeightField(heights, size=(4, 4))": HeightField(
         heights=0.15 * np.exp(-(((_CRATER - 0.55) / 0.12) ** 2)), size=(4.0, 4.0)
     ),
@@ -43,7 +43,7 @@ _TERRAINS: dict[str, Terrain] = {
 
 
 def plot_terrains() -> Figure:
-    figure = new_figure(width=10.0, height=9.6, manual_layout=True)
+    figure = new_figure(width=10.0, height=12.0, manual_layout=True)
     rows = (len(_TERRAINS) + 1) // 2
     for number, (name, terrain) in enumerate(_TERRAINS.items()):
         left, row = 0.5 * (number % 2), rows - 1 - number // 2
