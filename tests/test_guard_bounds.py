@@ -38,10 +38,12 @@ def test_unknown_speeds_are_assumed_and_listed():
 @pytest.mark.parametrize(
     ("changes", "message"),
     [
-        ({"speed": 0}, "guard bound speed is 0; it must be greater than 0"),
-        ({"speed": np.ones(4)}, r"guard bound speed has shape \(4,\); expected a number or \(6, 3\)"),
-        ({"speed": "fast"}, "guard bound speed must be an array of numbers"),
-        ({"acceleration": math.nan}, "guard bound acceleration contains a value that is not a finite number"),
+        ({"speed": 0}, "guard bound speed contains 0; every number must be finite and greater than 0"),
+        ({"speed": np.ones(4)}, r"guard bound speed is array.*; expected a number or an array of shape"),
+        ({"speed": "fast"}, "guard bound speed is 'fast'; expected a number"),
+        ({"acceleration": math.nan}, "guard bound acceleration contains nan; every number must be finite"),
+        ({"limits": "wide"}, "guard bound limits: expected an array of real numbers"),
+        ({"limits": np.full((6, 3, 2), math.nan)}, r"guard bound limits\[0, 0, 0\] is nan"),
         ({"limits": np.zeros((6, 3))}, r"guard bound limits has shape \(6, 3\); expected \(legs, 3, 2\)"),
         ({"limits": np.tile([1.0, 0.0], (6, 3, 1))}, "a lower limit is greater than its upper limit"),
         ({"limits": np.zeros((5, 3, 2)), "speed": 1, "acceleration": 1}, "guard bound limits is for 5 legs"),

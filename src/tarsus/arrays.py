@@ -27,6 +27,7 @@ __all__ = [
     "is_traced",
     "namespace",
     "only_where_needed",
+    "read_only",
     "require_finite",
     "require_float",
     "require_shape",
@@ -106,6 +107,18 @@ def as_floats(xp: Namespace, values: Any, *, name: str) -> Float[Array, "*batch"
     if xp.isdtype(array.dtype, "complex floating"):
         raise InputError(f"{name}: expected an array of real numbers, got {array.dtype}")
     return xp.astype(array, xp.float64)
+
+
+def read_only(array: Shaped[np.ndarray, "*shape"]) -> Shaped[np.ndarray, "*shape"]:
+    """Make a NumPy array read-only, and return it.
+
+    Parameters
+    ----------
+    array : array
+        Any shape.
+    """
+    array.setflags(write=False)
+    return array
 
 
 def is_traced(array: Any) -> bool:

@@ -6,14 +6,14 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from tarsus.arrays import Array
+from tarsus.arrays import Array, read_only
 from tarsus.errors import InputError
 from tarsus.robot.robot import Robot
 
 if TYPE_CHECKING:
     from jaxtyping import Float
 
-__all__ = ["STOPPING_TIME", "UNKNOWN_SPEED", "JointLimits", "joint_limits", "servo_speeds"]
+__all__ = ["STOPPING_TIME", "UNKNOWN_SPEED", "JointLimits", "joint_limits", "per_joint", "servo_speeds"]
 
 UNKNOWN_SPEED = 5.0
 """Speed limit of a joint whose servo, or its speed, is unknown [rad/s]: 60 deg in 0.21 s, as of a slow hobby servo."""
@@ -76,13 +76,28 @@ def joint_limits(
     """
     if speed is None:
         speed = share * np.array([[found or UNKNOWN_SPEED for found in row] for row in servo_speeds(robot)])
-    speeds = _per_joint("joint_speed", speed, robot.legs)
+    speeds = per_joint("joint_speed", speed, robot.legs)
     accelerations = speeds / STOPPING_TIME if acceleration is None else acceleration
-    return JointLimits(speeds, _per_joint("joint_acceleration", accelerations, robot.legs))
+    return JointLimits(speeds, per_joint("joint_acceleration", accelerations, robot.legs))
 
 
-def _per_joint(name: str, values: Float[Array, "..."], legs: int) -> Float[np.ndarray, "legs 3"]:
-    """Return positive numbers as a read-only array, one for each joint."""
+def per_joint(name: str, values: Float[Array, "..."], legs: int) -> Float[np.ndarray, "n 3"]:
+    """Return positive numbers as a read-only array, one for each joint.
+
+    Parameters
+    ----------
+    name : str
+        Their name in messages.
+    values : array
+        One number for all joints, one for each joint of a leg, shape (3,), or one for each joint, shape (legs, 3).
+    legs : int
+        Number of legs.
+
+    Raises
+    ------
+    InputError
+        If the shape is wrong, or a number is not finite or not greater than 0.
+    """
     try:
         array = np.array(np.broadcast_to(np.asarray(values, dtype=np.float64), (legs, 3)))
     except (TypeError, ValueError):
@@ -91,5 +106,4 @@ def _per_joint(name: str, values: Float[Array, "..."], legs: int) -> Float[np.nd
         ) from None
     if not (np.isfinite(array).all() and (array > 0).all()):
         raise InputError(f"{name} contains {array.min():g}; every number must be finite and greater than 0")
-    array.setflags(write=False)
-    return array
+    return read_only(array)

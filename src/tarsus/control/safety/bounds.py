@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING, Any, Self
 
 import numpy as np
 
-from tarsus.arrays import require_float
+from tarsus.arrays import as_floats, read_only, require_finite, require_float
 from tarsus.errors import InputError
 from tarsus.representation import represented
-from tarsus.robot.joint_limits import STOPPING_TIME, UNKNOWN_SPEED, joint_limits, servo_speeds
+from tarsus.robot.joint_limits import STOPPING_TIME, UNKNOWN_SPEED, joint_limits, per_joint, servo_speeds
 from tarsus.robot.robot import Robot, require_robot
 
 if TYPE_CHECKING:
@@ -80,9 +80,9 @@ class GuardBounds:
     assumptions: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
-        self._lock("limits", _checked_limits(self.limits))
+        object.__setattr__(self, "limits", _checked_limits(self.limits))
         for name in ("speed", "acceleration"):
-            self._lock(name, _per_joint(name, getattr(self, name), len(self.limits)))
+            object.__setattr__(self, name, per_joint(f"guard bound {name}", getattr(self, name), len(self.limits)))
         for name, high, zero in ((each.name, *each.metadata.values()) for each in fields(self) if each.metadata):
             value = require_float(f"guard bound {name}", getattr(self, name))
             object.__setattr__(self, name, value)
@@ -97,10 +97,6 @@ class GuardBounds:
                 f"guard bound max_time_step is {self.max_time_step:g} s; it must be at least min_time_step, "
                 f"{self.min_time_step:g} s"
             )
-
-    def _lock(self, name: str, array: Float[np.ndarray, "*#batch"]) -> None:
-        array.setflags(write=False)
-        object.__setattr__(self, name, array)
 
     @classmethod
     def of(cls, robot: Robot, **changes: Any) -> Self:
@@ -130,7 +126,7 @@ class GuardBounds:
             unknown = sum(not speed for leg in servo_speeds(robot) for speed in leg)
             if unknown:
                 assumptions = (f"joint speed {UNKNOWN_SPEED:g} rad/s for {unknown} joints: servo speed unknown",)
-        speed = _per_joint("speed", changes["speed"], robot.legs)
+        speed = per_joint("guard bound speed", changes["speed"], robot.legs)
         defaults = {"limits": robot.limits, "acceleration": speed / STOPPING_TIME, "assumptions": assumptions}
         bounds = cls(**{**defaults, **changes})
         if len(bounds.limits) != robot.legs:
@@ -138,32 +134,11 @@ class GuardBounds:
         return bounds
 
 
-def _numbers(name: str, value: Any) -> Float[np.ndarray, "*batch"]:
-    try:
-        array = np.array(value, dtype=np.float64)
-    except (TypeError, ValueError) as error:
-        raise InputError(f"guard bound {name} must be an array of numbers: {error}") from None
-    if not np.isfinite(array).all():
-        raise InputError(f"guard bound {name} contains a value that is not a finite number")
-    return array
-
-
 def _checked_limits(value: Any) -> Float[np.ndarray, "n 3 2"]:
-    limits = _numbers("limits", value)
+    limits: np.ndarray = read_only(np.array(as_floats(np, value, name="guard bound limits")))
+    require_finite("guard bound limits", limits)
     if limits.ndim != 3 or limits.shape[1:] != (3, 2):
         raise InputError(f"guard bound limits has shape {limits.shape}; expected (legs, 3, 2)")
     if (limits[..., 0] > limits[..., 1]).any():
         raise InputError("guard bound limits: a lower limit is greater than its upper limit")
     return limits
-
-
-def _per_joint(name: str, value: Any, legs: int) -> Float[np.ndarray, "n 3"]:
-    """Return positive numbers of shape (legs, 3)."""
-    array = _numbers(name, value)
-    try:
-        array = np.broadcast_to(array, (legs, 3)).copy()
-    except ValueError:
-        raise InputError(f"guard bound {name} has shape {array.shape}; expected a number or ({legs}, 3)") from None
-    if not (array > 0).all():
-        raise InputError(f"guard bound {name} is {array.min():g}; it must be greater than 0")
-    return array

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Self
 
 import numpy as np
 
+from tarsus.arrays import read_only
 from tarsus.control.control_output import ControlOutput
 from tarsus.errors import InputError
 from tarsus.gait.storage import labels, write_table
@@ -82,14 +83,14 @@ class Trace:
         """
 
         def column(name: str) -> Shaped[np.ndarray, "n *shape"]:
-            return _locked(np.array([getattr(state, name) for state in states]))
+            return read_only(np.array([getattr(state, name) for state in states]))
 
         return cls(
             robot=robot,
             time=column("time"),
             commanded_body=stack_poses([output.body for output in commanded]),
-            commanded_angles=_locked(np.array([output.angles for output in commanded])),
-            commanded_belly=_locked(np.array([output.belly for output in commanded])),
+            commanded_angles=read_only(np.array([output.angles for output in commanded])),
+            commanded_belly=read_only(np.array([output.belly for output in commanded])),
             body=stack_poses([state.body for state in states]),
             angles=column("joint_angles"),
             speeds=column("joint_speeds"),
@@ -102,11 +103,6 @@ class Trace:
 
     def __repr__(self) -> str:
         return f"Trace({self.robot.name!r}, {len(self.time)} samples, {self.time[-1]:.2f} s)"
-
-
-def _locked(array: Shaped[np.ndarray, "*shape"]) -> Shaped[np.ndarray, "*shape"]:
-    array.setflags(write=False)
-    return array
 
 
 def trace_to_csv(trace: Trace, path: str | os.PathLike[str]) -> None:
