@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from tarsus.arrays import read_only
 from tarsus.control.control_output import ControlOutput
 from tarsus.control.filters import CriticallyDamped
 from tarsus.control.plant import Plant
@@ -117,5 +118,4 @@ class CompensatedPlant:
 
     def _compensated(self, output: ControlOutput) -> ControlOutput:
         angles = commands_within_limits(self.robot, output.angles, self._offset.value.reshape(-1, 3))
-        angles.setflags(write=False)
-        return dataclasses.replace(output, angles=angles)
+        return dataclasses.replace(output, angles=read_only(angles))

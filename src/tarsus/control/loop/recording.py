@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from tarsus.arrays import read_only
 from tarsus.control.limitation import Limitation
 from tarsus.control.walk_state import WalkState
 from tarsus.gait.motion import Motion
@@ -131,14 +132,12 @@ class Recording:
 
     def __post_init__(self) -> None:
         for array in (self.twist_commanded, self.twist, self.cycle_times, self.belly, self.measured_angles):
-            array.setflags(write=False)
+            read_only(array)
 
     @cached_property
     def upright(self) -> Bool[np.ndarray, "n"]:
         """Whether the robot stands or walks, and is not lying, rising, sitting down or folding ``(n,)``."""
-        upright = np.array([activity in _WALK_STATES for activity in self.activities])
-        upright.setflags(write=False)
-        return upright
+        return read_only(np.array([activity in _WALK_STATES for activity in self.activities]))
 
     @cached_property
     def standing(self) -> tuple[Motion, ...]:

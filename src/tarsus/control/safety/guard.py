@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, Literal, get_args
 
 import numpy as np
 
-from tarsus.arrays import Array
+from tarsus.arrays import Array, read_only
 from tarsus.control.safety.bounds import GuardBounds
 from tarsus.control.safety.feet_monitor import FeetMonitor
 from tarsus.control.safety.inputs import GuardClock, read_angles, read_contacts, read_up
@@ -261,6 +261,5 @@ class Guard:
 
     def _output(self, violations: list[Violation]) -> GuardOutput:
         interventions = self._log.record(violations, self.time)
-        angles = np.array(self._joints.angles).reshape(self._robot.legs, 3)
-        angles.setflags(write=False)
+        angles = read_only(np.array(self._joints.angles).reshape(self._robot.legs, 3))
         return GuardOutput(angles, self._state is GuardState.PASSING, self._state, self.time, interventions)

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from tarsus.arrays import read_only
 from tarsus.control.sequence.sequence import MotionSequence, SequenceSample
 from tarsus.control.sequence.stage import GRID
 from tarsus.gait.walk_setup import require_number
@@ -121,9 +122,7 @@ class SequencePlayer:
             self._advance(interval, self._rate_change(interval))
             remaining -= interval
         self._advance(remaining, 0.0)
-        angles = self.angles
-        angles.setflags(write=False)
-        return angles
+        return read_only(self.angles)
 
     def _advance(self, dt: float, rate_change: float) -> None:
         """Advance the time of the sequence while the rate changes linearly; the time stops at both ends."""

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple, Self
 
 import numpy as np
 
+from tarsus.arrays import read_only
 from tarsus.control.sequence.sequence import MotionSequence
 from tarsus.control.sequence.stage import Stage
 from tarsus.control.startup.checks import check_stage
@@ -212,8 +213,7 @@ class SequenceBuilder:
 
     def end_at(self, angles: Float[np.ndarray, "legs 3"]) -> Self:
         """Return the robot with final joint angles that are equal to the present ones up to rounding [rad]."""
-        angles = np.array(angles)
-        angles.setflags(write=False)
+        angles = read_only(np.array(angles))
         last = [replace(stage, angles_end=angles) for stage in self.stages[-1:]]
         return replace(self, angles=angles, stages=(*self.stages[:-1], *last))
 

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from tarsus.arrays import Array
+from tarsus.arrays import Array, read_only
 from tarsus.control.startup.builder import GROUND_TOLERANCE, SequenceBuilder, body_contacts
 from tarsus.errors import InputError, TarsusError
 from tarsus.gait.foot_plane import FootPlane, fitted_plane
@@ -166,6 +166,4 @@ def _single_pose(robot: Robot, angles: Float[Array, "legs 3"]) -> Float[np.ndarr
     _, measured = checked_angles(robot, angles)
     if robot.batch_shape or measured.ndim != 2:
         raise InputError("motion sequences are planned for a single robot in a single pose, not for a batch")
-    single: Float[np.ndarray, "legs 3"] = measured.copy()
-    single.setflags(write=False)
-    return single
+    return read_only(measured.copy())

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from tarsus.arrays import Array
+from tarsus.arrays import Array, read_only
 from tarsus.control.startup.initial_state import SERVO_SPEED_SHARE, lying_state, over_feet
 from tarsus.kinematics.leg_path import LegFreeSpace
 from tarsus.representation import represented
@@ -73,10 +73,9 @@ def power_off_order(robot: Robot, angles: Float[Array, "legs 3"]) -> PowerOffOrd
     drop = np.zeros((robot.legs, 3))
     for leg in range(robot.legs):
         drop[leg, 1:] = _drops(robot, leg, LegFreeSpace.of(robot, leg, state.body), state.angles[leg])
-    drop.setflags(write=False)
     return PowerOffOrder(
         order=tuple((leg, joint) for joint in range(3) for leg in range(robot.legs)),
-        drop=drop,
+        drop=read_only(drop),
         falls=tuple(
             f"{robot.leg_names[leg]}: with the {JOINTS[joint]} off, the {('', 'foot', 'knee')[joint]} drops by "
             f"{drop[leg, joint] * 1000:.0f} mm"

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from tarsus.arrays import read_only
 from tarsus.robot.robot import Robot
 
 if TYPE_CHECKING:
@@ -48,6 +49,4 @@ class Braking:
     def at(self, time: float) -> Float[np.ndarray, "legs 3"]:
         """Return the joint angles at a time after the start [rad]: array, shape (legs, 3), read-only."""
         share = np.minimum(time / self._stopping, 1.0)
-        angles: np.ndarray = self._angles + self._speeds * self._stopping * share * (1 - share / 2)
-        angles.setflags(write=False)
-        return angles
+        return read_only(self._angles + self._speeds * self._stopping * share * (1 - share / 2))

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 import numpy as np
 
+from tarsus.arrays import read_only
 from tarsus.control.command import Command
 from tarsus.control.limitation import Limitation, LimitationKind
 from tarsus.control.readings import CHANNELS, SensorReadings, Vector
@@ -140,9 +141,8 @@ class ReducedWalking(Walking):
         contacts[self._legs] = now.contacts
         if share >= 1:
             angles[self._legs] = now.angles + self._zero
-        angles.setflags(write=False)
         return now._replace(
-            angles=angles,
+            angles=read_only(angles),
             feet=None,
             contacts=contacts,
             state=now.state if share >= 1 else RobotState.WALKING,
