@@ -48,10 +48,9 @@ def test_every_state_has_its_transitions_and_every_requestable_one_can_be_reache
         for goal in REQUESTABLE:
             state, steps = start, 0
             while (change := next_state(state, goal)) is not None:
-                moving, after = change
-                assert moving in TRANSITIONS[state]
-                assert after in TRANSITIONS[moving]
-                state, steps = after, steps + 1
+                assert change in TRANSITIONS[state]
+                assert change.end in TRANSITIONS[change]
+                state, steps = change.end, steps + 1
                 assert steps <= 2
             # Folded legs are not unfolded just to lie.
             assert state is goal or (state, goal) == (RobotState.FOLDED, RobotState.LYING)

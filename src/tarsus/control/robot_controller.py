@@ -205,18 +205,17 @@ class RobotController:
         braking = None if self._at_rest else self.leg_failures.braking(self._activity, now.angles, self._rates)
         if change is None or not (self._at_rest or braking):
             return
-        state, end = change
         try:
-            sequence = self._plan(state, now.angles if braking is None else braking.at(braking.duration))
+            sequence = self._plan(change, now.angles if braking is None else braking.at(braking.duration))
         except TarsusError as error:
-            self._activity = way_back(self._activity, end)
+            self._activity = way_back(self._activity, change)
             if not isinstance(self._activity, Playing):
-                self._rejected = Limitation(kind=LimitationKind.STATE, cause=f"{state} is not possible: {error}")
+                self._rejected = Limitation(kind=LimitationKind.STATE, cause=f"{change} is not possible: {error}")
             return
-        self._activity = Playing(sequence, state, before=self._activity, base=self._base, end=end, braking=braking)
+        self._activity = Playing(sequence, change, before=self._activity, base=self._base, braking=braking)
         self._base = ground_frame(now.body) @ ground_frame(sequence.stages[0].start).inverse()
 
-    def _next_change(self) -> tuple[RobotState, RobotState] | None:
+    def _next_change(self) -> RobotState | None:
         """Return the next change on the way to the state that is wanted; None where there is none that is possible."""
         state = RobotState.STANDING if self._now.state.upright else self._now.state
         return None if self._rejected is not None else next_state(state, self._goal)

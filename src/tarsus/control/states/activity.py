@@ -142,9 +142,7 @@ class Playing:
     before, base : Activity, Pose or None
         What it did before, and does again where the sequence is played back to its start; the pose of that activity's
         ground frame.
-    end : RobotState
-        The state at the end.
-    braking : Braking, optional
+    braking : Braking or None
         How the joints come to rest at the start of the sequence where it begins in the middle of a motion. It does not
         return there.
     """
@@ -156,19 +154,17 @@ class Playing:
         *,
         before: Activity,
         base: Pose | None,
-        end: RobotState,
-        braking: Braking | None = None,
+        braking: Braking | None,
     ) -> None:
-        self.sequence, self.state, self.before, self.base, self.end = sequence, state, before, base, end
+        self.sequence, self.state, self.end, self.before, self.base = sequence, state, state.end, before, base
         self._player, self._felt = SequencePlayer(sequence), before.snapshot.felt
         self.braking, self._time = braking, 0.0
         self.returning = False
 
     def turn(self, *, back: bool) -> None:
         """Continue to the end, or return to the start; the joints' accelerations stay within their limits."""
-        if back != self.returning:
-            self.returning = back
-            (self._player.reverse if back else self._player.resume)()
+        self.returning = back
+        (self._player.reverse if back else self._player.resume)()
 
     def leads_to(self, goal: RobotState) -> bool:
         """Return whether the end of the sequence is on the way to a state that is wanted."""
@@ -282,17 +278,17 @@ Activity: TypeAlias = Walking | Playing | Resting
 """What moves all joints, tick by tick."""
 
 
-def way_back(activity: Activity, end: RobotState) -> Activity:
-    """Return what leads to a state where nothing can be planned for it: the same activity where there is no such way.
+def way_back(activity: Activity, change: RobotState) -> Activity:
+    """Return what takes the place of a change that can't be planned: the same activity where there is no such way.
 
     A robot that has sat down from a stance stands up by playing that back: the feet are where they stood.
 
     Parameters
     ----------
-    activity, end : Activity, RobotState
-        What the robot does; the state that is wanted.
+    activity, change : Activity, RobotState
+        What the robot does; the change, like rising.
     """
-    down = activity.after if isinstance(activity, Resting) and end.upright else None
+    down = activity.after if isinstance(activity, Resting) and change is RobotState.RISING else None
     if down is None or down.braking is not None or type(down.before) is not Walking:
         return activity
     down.state = RobotState.RISING

@@ -29,38 +29,47 @@ class RobotState(StrEnum):
         return self in (RobotState.STANDING, RobotState.WALKING)
 
     @property
+    def end(self) -> RobotState:
+        """The state in which rising, sitting down or folding ends; any other lasts."""
+        return _ENDS.get(self, self)
+
+    @property
     def on_belly(self) -> bool:
         """Whether the robot rests on its belly, and nothing moves."""
         return self in (RobotState.LYING, RobotState.FOLDED)
 
 
-_ALLOWED: dict[RobotState, tuple[RobotState, ...]] = {
-    RobotState.LYING: (RobotState.RISING, RobotState.FOLDING, RobotState.FAULT),
-    RobotState.FOLDED: (RobotState.RISING, RobotState.FAULT),
-    RobotState.RISING: (RobotState.STANDING, RobotState.LYING, RobotState.FOLDED, RobotState.FAULT),
-    RobotState.STANDING: (RobotState.WALKING, RobotState.SITTING, RobotState.FAULT),
-    RobotState.WALKING: (RobotState.STANDING, RobotState.FAULT),
-    RobotState.SITTING: (RobotState.LYING, RobotState.STANDING, RobotState.FAULT),
-    RobotState.FOLDING: (RobotState.FOLDED, RobotState.LYING, RobotState.FAULT),
-}
-
 TRANSITIONS: Mapping[RobotState, frozenset[RobotState]] = MappingProxyType(
-    {state: frozenset(following) for state, following in _ALLOWED.items()}
-    # A robot that the guard releases continues what it did.
-    | {RobotState.FAULT: frozenset(RobotState) - {RobotState.FAULT}}
+    {
+        RobotState.LYING: frozenset({RobotState.RISING, RobotState.FOLDING, RobotState.FAULT}),
+        RobotState.FOLDED: frozenset({RobotState.RISING, RobotState.FAULT}),
+        RobotState.RISING: frozenset({RobotState.STANDING, RobotState.LYING, RobotState.FOLDED, RobotState.FAULT}),
+        RobotState.STANDING: frozenset({RobotState.WALKING, RobotState.SITTING, RobotState.FAULT}),
+        RobotState.WALKING: frozenset({RobotState.STANDING, RobotState.FAULT}),
+        RobotState.SITTING: frozenset({RobotState.LYING, RobotState.STANDING, RobotState.FAULT}),
+        RobotState.FOLDING: frozenset({RobotState.FOLDED, RobotState.LYING, RobotState.FAULT}),
+        # A robot that the guard releases continues what it did.
+        RobotState.FAULT: frozenset(RobotState) - {RobotState.FAULT},
+    }
 )
 """The states that may follow each state. From RISING, SITTING and FOLDING the robot may also return to where it was."""
 
 REQUESTABLE = (RobotState.STANDING, RobotState.LYING, RobotState.FOLDED)
 """The states that a command may ask for; walking follows from a twist."""
 
-# The first step from one requestable state towards another, and the state that it ends in.
-_STEPS: dict[tuple[RobotState, RobotState], tuple[RobotState, RobotState]] = {
-    (RobotState.STANDING, RobotState.LYING): (RobotState.SITTING, RobotState.LYING),
-    (RobotState.STANDING, RobotState.FOLDED): (RobotState.SITTING, RobotState.LYING),
-    (RobotState.LYING, RobotState.STANDING): (RobotState.RISING, RobotState.STANDING),
-    (RobotState.LYING, RobotState.FOLDED): (RobotState.FOLDING, RobotState.FOLDED),
-    (RobotState.FOLDED, RobotState.STANDING): (RobotState.RISING, RobotState.STANDING),
+# The first step from one requestable state towards another.
+_STEPS = {
+    (RobotState.STANDING, RobotState.LYING): RobotState.SITTING,
+    (RobotState.STANDING, RobotState.FOLDED): RobotState.SITTING,
+    (RobotState.LYING, RobotState.STANDING): RobotState.RISING,
+    (RobotState.LYING, RobotState.FOLDED): RobotState.FOLDING,
+    (RobotState.FOLDED, RobotState.STANDING): RobotState.RISING,
+}
+# The state that each step ends in.
+_ENDS = {
+    RobotState.RISING: RobotState.STANDING,
+    RobotState.SITTING: RobotState.LYING,
+    RobotState.FOLDING: RobotState.FOLDED,
 }
 
 
@@ -83,8 +92,8 @@ def requested_state(value: RobotState | str) -> RobotState:
     return RobotState(value)
 
 
-def next_state(state: RobotState, goal: RobotState) -> tuple[RobotState, RobotState] | None:
-    """Return the next state on the way to a goal, and the state that it ends in; None where the goal is reached.
+def next_state(state: RobotState, goal: RobotState) -> RobotState | None:
+    """Return the next state on the way to a goal; None where the goal is reached.
 
     A robot that lies already counts as lying when it is folded: folded legs are unfolded by standing up only.
 
