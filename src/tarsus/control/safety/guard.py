@@ -12,8 +12,13 @@ from tarsus.arrays import Array, read_only
 from tarsus.control.safety.bounds import GuardBounds
 from tarsus.control.safety.feet_monitor import FeetMonitor
 from tarsus.control.safety.inputs import GuardClock, read_angles, read_contacts, read_up
-from tarsus.control.safety.intervention_log import InterventionLog
-from tarsus.control.safety.interventions import GuardOutput, GuardState, Intervention, InterventionKind, Violation
+from tarsus.control.safety.interventions import (
+    GuardOutput,
+    GuardState,
+    Intervention,
+    InterventionKind,
+    InterventionLog,
+)
 from tarsus.control.safety.joint_monitor import JointMonitor
 from tarsus.control.safety.sit_down import SitDown
 from tarsus.errors import InputError, TarsusError, UnknownNameError
@@ -89,10 +94,10 @@ class Guard:
         if log_size < 1 or log_size % 1:
             raise InputError(f"log_size is {log_size}; it must be a whole number of at least 1")
         self._robot, self._policy, self._recover = robot, policy, recover
-        self._joints = JointMonitor(self.bounds)
+        self._joints = JointMonitor(robot, self.bounds)
         self._feet = FeetMonitor(robot, self.bounds)
         self._clock = GuardClock(self.bounds)
-        self._log = InterventionLog(robot, int(log_size))
+        self._log = InterventionLog(int(log_size))
         self._state = GuardState.PASSING
         self._time_at_rest = 0.0
         self._sit_down: SitDown | None = None
@@ -103,10 +108,10 @@ class Guard:
             self._joints.start(self._checked_start(start), 0.0)
 
     def _checked_start(self, start: Float[Array, "legs 3"]) -> list[float]:
-        angles = read_angles(start, self._robot.legs)
-        violations = [angles] if isinstance(angles, Violation) else self._joints.limit_violations(angles)
-        if isinstance(angles, Violation) or violations:
-            reasons = "; ".join(violation.named(self._robot, 0.0).text() for violation in violations)
+        angles = read_angles(start, self._joints.names)
+        violations = [angles] if isinstance(angles, Intervention) else self._joints.limit_violations(angles)
+        if isinstance(angles, Intervention) or violations:
+            reasons = "; ".join(violation.text() for violation in violations)
             raise InputError(f"start must be an array of finite angles within the limits, shape (legs, 3): {reasons}")
         return angles
 
@@ -162,9 +167,9 @@ class Guard:
             The joint angles to send, and the violations of the command.
         """
         step, violations = self._clock.advance(dt)
-        parsed = read_angles(angles, self._robot.legs)
-        command = None if isinstance(parsed, Violation) else parsed
-        if isinstance(parsed, Violation):
+        parsed = read_angles(angles, self._joints.names)
+        command = None if isinstance(parsed, Intervention) else parsed
+        if isinstance(parsed, Intervention):
             violations.append(parsed)
         else:
             violations += self._joints.limit_violations(parsed)
@@ -180,25 +185,25 @@ class Guard:
             self._hold()
         return self._output(violations)
 
-    def _feet_violations(self, command: list[float], contacts: Any, body: Pose | None) -> list[Violation]:
+    def _feet_violations(self, command: list[float], contacts: Any, body: Pose | None) -> list[Intervention]:
         """Return the violations of contacts and body pose if these are invalid, else those of the feet."""
         stance = None if contacts is None else read_contacts(contacts, self._robot.legs)
         up = None if body is None else read_up(body)
-        if isinstance(stance, Violation) or isinstance(up, Violation):
-            return [found for found in (stance, up) if isinstance(found, Violation)]
+        if isinstance(stance, Intervention) or isinstance(up, Intervention):
+            return [found for found in (stance, up) if isinstance(found, Intervention)]
         return self._feet.violations(command, stance, up)
 
     def _start_in_stance(self) -> None:
         """Start in the default stance because the first command is invalid; without a stance, at zero angles."""
         with suppress(TarsusError):
             solution = inverse_kinematics(self._robot, default_stance(self._robot))
-            angles = read_angles(solution.angles, self._robot.legs)
-            if not isinstance(angles, Violation) and not self._joints.limit_violations(angles):
+            angles = read_angles(solution.angles, self._joints.names)
+            if not isinstance(angles, Intervention) and not self._joints.limit_violations(angles):
                 self._joints.start(angles, 0.0)
         self._started = True
         self._hold()
 
-    def _advance(self, command: list[float] | None, step: float, violations: list[Violation]) -> None:
+    def _advance(self, command: list[float] | None, step: float, violations: list[Intervention]) -> None:
         """Pass the command, recover, or hold; a valid command too far away to recover adds a violation."""
         if command is None or violations:
             if self._state in (GuardState.PASSING, GuardState.RECOVERING):
@@ -221,7 +226,7 @@ class Guard:
         self._reset_requested, self._seated, self._time_at_rest = False, False, 0.0
         self._feet.reset_distances()
 
-    def _may_recover(self, command: list[float], violations: list[Violation]) -> bool:
+    def _may_recover(self, command: list[float], violations: list[Intervention]) -> bool:
         """Return whether the joints may move towards a valid command."""
         if self._reset_requested:
             return True
@@ -230,7 +235,9 @@ class Guard:
         # Hysteresis: twice the distance while recovering.
         bound = (2 if recovering else 1) * self.bounds.recovery_distance
         if distance > bound:
-            violations.append(Violation(InterventionKind.COMMAND_DISTANCE, joint // 3, joint % 3, distance, bound))
+            violations.append(
+                Intervention(InterventionKind.COMMAND_DISTANCE, *self._joints.names[joint], distance, bound)
+            )
             if recovering:
                 self._hold()
             return False
@@ -259,7 +266,7 @@ class Guard:
             self._state = GuardState.SITTING
             self._sit_down = SitDown(self._robot, self.bounds, self._joints, stance=self._feet.stance, up=self._feet.up)
 
-    def _output(self, violations: list[Violation]) -> GuardOutput:
+    def _output(self, violations: list[Intervention]) -> GuardOutput:
         interventions = self._log.record(violations, self.time)
         angles = read_only(np.array(self._joints.angles).reshape(self._robot.legs, 3))
         return GuardOutput(angles, self._state is GuardState.PASSING, self._state, self.time, interventions)

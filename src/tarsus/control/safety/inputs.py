@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from tarsus.control.safety.bounds import GuardBounds
-from tarsus.control.safety.interventions import InterventionKind, Violation
+from tarsus.control.safety.interventions import Intervention, InterventionKind
 from tarsus.control.safety.scalar_geometry import Point
 from tarsus.kinematics.pose import Pose
 
@@ -19,35 +19,35 @@ _NUMERIC_KINDS = "fiu"
 _LONGEST_GAP = 3600.0
 
 
-def read_angles(angles: Any, legs: int) -> list[float] | Violation:
+def read_angles(angles: Any, names: list[tuple[str, str]]) -> list[float] | Intervention:
     """Return the joint angles in one flat list, or the violation.
 
     Parameters
     ----------
     angles : any
         Joint angles as given; valid are real numbers of shape (legs, 3) [rad].
-    legs : int
-        Number of legs.
+    names : list of (str, str)
+        Names of leg and joint, for all joints.
     """
     # The conversion of an arbitrary object can raise anything, and the guard must still return angles.
     try:
         array = np.asarray(angles)
-        if array.dtype.kind not in _NUMERIC_KINDS or array.shape != (legs, 3):
-            return Violation(InterventionKind.SHAPE, -1, -1, float(array.size), 3.0 * legs)
+        if array.dtype.kind not in _NUMERIC_KINDS or array.shape != (len(names) // 3, 3):
+            return Intervention(InterventionKind.SHAPE, "", "", float(array.size), float(len(names)))
         listed = array.ravel().tolist()
         values = listed if array.dtype == np.float64 else [float(value) for value in listed]
     except Exception:
-        return Violation(InterventionKind.SHAPE, -1, -1, math.nan, 3.0 * legs)
-    if math.isfinite(sum(values)):
-        return values
-    # The sum of finite values can overflow.
-    index = next((i for i, value in enumerate(values) if not math.isfinite(value)), None)
-    if index is None:
-        return values
-    return Violation(InterventionKind.NOT_FINITE, index // 3, index % 3, values[index], math.nan)
+        return Intervention(InterventionKind.SHAPE, "", "", math.nan, float(len(names)))
+    # Only the sum of values that are not finite, or of very great ones, is not finite.
+    wrong = (
+        None if math.isfinite(sum(values)) else next((i for i, v in enumerate(values) if not math.isfinite(v)), None)
+    )
+    return (
+        values if wrong is None else Intervention(InterventionKind.NOT_FINITE, *names[wrong], values[wrong], math.nan)
+    )
 
 
-def read_contacts(contacts: Any, legs: int) -> list[bool] | Violation:
+def read_contacts(contacts: Any, legs: int) -> list[bool] | Intervention:
     """Return the feet in stance, or the violation.
 
     Parameters
@@ -62,12 +62,12 @@ def read_contacts(contacts: Any, legs: int) -> list[bool] | Violation:
         if array.dtype.kind == "b" and array.shape == (legs,):
             stance: list[bool] = array.tolist()
             return stance
-        return Violation(InterventionKind.CONTACTS, -1, -1, float(array.size), float(legs))
+        return Intervention(InterventionKind.CONTACTS, "", "", float(array.size), float(legs))
     except Exception:
-        return Violation(InterventionKind.CONTACTS, -1, -1, math.nan, float(legs))
+        return Intervention(InterventionKind.CONTACTS, "", "", math.nan, float(legs))
 
 
-def read_up(body: Any) -> Point | Violation:
+def read_up(body: Any) -> Point | Intervention:
     """Return the upward direction in B at a single pose, or the violation.
 
     Parameters
@@ -79,7 +79,7 @@ def read_up(body: Any) -> Point | Violation:
         x, y, z = body.rotation[2].tolist()
         return x, y, z
     size = float(body.rotation.size) if isinstance(body, Pose) else math.nan
-    return Violation(InterventionKind.BODY_POSE, -1, -1, size, 9.0)
+    return Intervention(InterventionKind.BODY_POSE, "", "", size, 9.0)
 
 
 class GuardClock:
@@ -100,7 +100,7 @@ class GuardClock:
         self._shortest, self._longest = bounds.min_time_step, bounds.max_time_step
         self._pending = self.time = 0.0
 
-    def advance(self, dt: Any) -> tuple[float, list[Violation]]:
+    def advance(self, dt: Any) -> tuple[float, list[Intervention]]:
         """Advance the clock; return the time step to use, 0 for none, and the violations.
 
         Parameters
@@ -117,8 +117,8 @@ class GuardClock:
         if self._shortest <= dt <= self._longest:
             return step, []
         if self._longest < dt <= _LONGEST_GAP:
-            return step, [Violation(InterventionKind.TIME_GAP, -1, -1, dt, self._longest)]
-        return step, [Violation(InterventionKind.TIME_STEP, -1, -1, dt, self._shortest)]
+            return step, [Intervention(InterventionKind.TIME_GAP, "", "", dt, self._longest)]
+        return step, [Intervention(InterventionKind.TIME_STEP, "", "", dt, self._shortest)]
 
 
 def _number(dt: Any) -> float:

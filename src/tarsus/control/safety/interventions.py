@@ -1,20 +1,23 @@
-"""Violations of a bound; interventions: violations as values for records and messages; the output of the guard."""
+"""Interventions: violations of a bound as values for records and messages; their log; the output of the guard."""
 
 from __future__ import annotations
 
 import math
+from collections import deque
+from collections.abc import Mapping, Set
 from enum import StrEnum
+from operator import attrgetter
+from types import MappingProxyType
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from tarsus.representation import represented
-from tarsus.robot.robot import JOINTS, Robot
 
 if TYPE_CHECKING:
     from jaxtyping import Float
 
-__all__ = ["GuardOutput", "GuardState", "Intervention", "InterventionKind", "Violation"]
+__all__ = ["GuardOutput", "GuardState", "Intervention", "InterventionKind", "InterventionLog"]
 
 
 class InterventionKind(StrEnum):
@@ -36,6 +39,7 @@ class InterventionKind(StrEnum):
     COMMAND_DISTANCE = "command_distance"
 
 
+_EXCESS = attrgetter("excess")
 _DEGREES = 57.29577951308232
 
 # Quantity, unit of display, and display units per SI unit.
@@ -55,38 +59,6 @@ _TEXTS = {
     InterventionKind.FOOT_HEIGHT: ("height off the ground plane", "mm", 1e3),
     InterventionKind.COMMAND_DISTANCE: ("distance of the command", "deg", _DEGREES),
 }
-
-
-class Violation(NamedTuple):
-    """A violated bound, with the leg and the joint as indices.
-
-    Attributes
-    ----------
-    kind : InterventionKind
-        What violates the bound.
-    leg, joint : int
-        Index of the leg and of the joint; -1 for none.
-    value, bound : float
-        The value and its bound, in SI units; NaN where there is no number.
-    """
-
-    kind: InterventionKind
-    leg: int
-    joint: int
-    value: float
-    bound: float
-
-    def named(self, robot: Robot, time: float) -> Intervention:
-        """Return the violation with the names of leg and joint.
-
-        Parameters
-        ----------
-        robot, time : Robot, float
-            The robot; time of the guard [s].
-        """
-        leg = robot.leg_codes[self.leg] if self.leg >= 0 else ""
-        joint = JOINTS[self.joint] if self.joint >= 0 else ""
-        return Intervention(self.kind, leg, joint, self.value, self.bound, time)
 
 
 @represented()
@@ -110,7 +82,7 @@ class Intervention(NamedTuple):
     joint: str
     value: float
     bound: float
-    time: float
+    time: float = 0.0
 
     @property
     def excess(self) -> float:
@@ -162,3 +134,62 @@ class GuardOutput(NamedTuple):
     state: GuardState
     time: float
     interventions: tuple[Intervention, ...]
+
+
+class InterventionLog:
+    """Interventions of a guard, in bounded memory.
+
+    Attributes
+    ----------
+    latest : deque of Intervention
+        The latest interventions at the tick they began, oldest first.
+    counts : mapping of InterventionKind to int
+        How many interventions of each kind began.
+
+    Parameters
+    ----------
+    size : int
+        Capacity of `latest`.
+    """
+
+    def __init__(self, size: int) -> None:
+        self._active: Set[InterventionKind] = set()
+        self._counts: dict[InterventionKind, int] = {}
+        self._worst: dict[InterventionKind, Intervention] = {}
+        self.latest: deque[Intervention] = deque(maxlen=size)
+        self.counts: Mapping[InterventionKind, int] = MappingProxyType(self._counts)
+
+    def record(self, violations: list[Intervention], time: float) -> tuple[Intervention, ...]:
+        """Log the violations of a tick; return the worst one of each kind.
+
+        Parameters
+        ----------
+        violations : list of Intervention
+            All violations of the tick; those of the last tick that are not among them have ended.
+        time : float
+            Time of the guard [s].
+        """
+        worst: dict[InterventionKind, Intervention] = {}
+        for violation in violations:
+            found = violation._replace(time=time)
+            worst[found.kind] = max(worst.get(found.kind, found), found, key=_EXCESS)
+        for kind, found in worst.items():
+            if kind not in self._active:
+                self._counts[kind] = self._counts.get(kind, 0) + 1
+                self.latest.append(found)
+            self._worst[kind] = max(self._worst.get(kind, found), found, key=_EXCESS)
+        self._active = worst.keys()
+        return tuple(worst.values())
+
+    def summary(self, time: float, state: GuardState) -> str:
+        """Return the counts and the worst intervention of each kind as text.
+
+        Parameters
+        ----------
+        time, state : float, GuardState
+            Time of the guard [s]; state of the guard.
+        """
+        total = sum(self._counts.values())
+        lines = [f"{total} intervention{'s' * (total != 1)} in {time:.2f} s, state: {state}"]
+        lines += [f"  {number} x {self._worst[kind].text()}" for kind, number in self._counts.items()]
+        return "\n".join(lines)

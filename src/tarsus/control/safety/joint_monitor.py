@@ -17,8 +17,9 @@ import math
 import numpy as np
 
 from tarsus.control.safety.bounds import GuardBounds
-from tarsus.control.safety.interventions import InterventionKind, Violation
+from tarsus.control.safety.interventions import Intervention, InterventionKind
 from tarsus.kinematics.reach import ANGLE_TOLERANCE
+from tarsus.robot.robot import JOINTS, Robot
 
 __all__ = ["JointMonitor"]
 
@@ -31,6 +32,8 @@ class JointMonitor:
 
     Attributes
     ----------
+    names : list of (str, str)
+        Of each joint: short name of its leg, and its own name.
     angles : list of float
         Last sent joint angles of all legs in one flat list [rad].
     speeds : list of float
@@ -38,11 +41,12 @@ class JointMonitor:
 
     Parameters
     ----------
-    bounds : GuardBounds
-        The bounds.
+    robot, bounds : Robot, GuardBounds
+        A single robot; the bounds.
     """
 
-    def __init__(self, bounds: GuardBounds) -> None:
+    def __init__(self, robot: Robot, bounds: GuardBounds) -> None:
+        self.names = [(leg, joint) for leg in robot.leg_codes for joint in JOINTS]
         motion = np.stack([bounds.speed, bounds.acceleration], axis=-1)
         # Of each joint: lower and upper limit, greatest speed and acceleration.
         self._bounds: list[list[float]] = np.concatenate([bounds.limits, motion], axis=-1).reshape(-1, 4).tolist()
@@ -71,7 +75,7 @@ class JointMonitor:
         if self.at_rest:
             self._step = 0.0
 
-    def limit_violations(self, angles: list[float]) -> list[Violation]:
+    def limit_violations(self, angles: list[float]) -> list[Intervention]:
         """Return the angles beyond a limit; clamp `angles` to the limits in place.
 
         Parameters
@@ -84,11 +88,11 @@ class JointMonitor:
             if not low <= angle <= high:
                 bound = low if angle < low else high
                 if abs(angle - bound) > ANGLE_TOLERANCE:
-                    violations.append(Violation(InterventionKind.JOINT_LIMIT, i // 3, i % 3, angle, bound))
+                    violations.append(Intervention(InterventionKind.JOINT_LIMIT, *self.names[i], angle, bound))
                 angles[i] = bound
         return violations
 
-    def motion_violations(self, angles: list[float], step: float) -> list[Violation]:
+    def motion_violations(self, angles: list[float], step: float) -> list[Intervention]:
         """Return the violated bounds on speed, acceleration and braking distance.
 
         Parameters
@@ -104,17 +108,17 @@ class JointMonitor:
             velocity = (angle - last_angle) / step
             speed = velocity if velocity >= 0 else -velocity
             if speed > max_speed + tolerance:
-                violations.append(Violation(InterventionKind.JOINT_SPEED, i // 3, i % 3, speed, max_speed))
+                violations.append(Intervention(InterventionKind.JOINT_SPEED, *self.names[i], speed, max_speed))
             change = velocity - last_speed if velocity >= last_speed else last_speed - velocity
             if change > max_acceleration * interval + tolerance:
                 kind = InterventionKind.JOINT_ACCELERATION
-                violations.append(Violation(kind, i // 3, i % 3, change / interval, max_acceleration))
+                violations.append(Intervention(kind, *self.names[i], change / interval, max_acceleration))
             braking_speed = speed - max_acceleration * step / 2
             if braking_speed > 0:
                 distance = high - angle if velocity > 0 else angle - low
                 if braking_speed * braking_speed > 2 * max_acceleration * (distance + _ROUNDING):
                     needed = braking_speed * braking_speed / (2 * max_acceleration)
-                    violations.append(Violation(InterventionKind.BRAKING_DISTANCE, i // 3, i % 3, needed, distance))
+                    violations.append(Intervention(InterventionKind.BRAKING_DISTANCE, *self.names[i], needed, distance))
         return violations
 
     def send(self, angles: list[float], step: float) -> None:
