@@ -1,18 +1,20 @@
-"""Commands: what the robot is asked to do."""
+"""Commands: what the robot is asked to do, and what of earlier commands still holds."""
 
 from __future__ import annotations
 
 import math
 import operator
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, Literal
 
+from tarsus.control.states.robot_state import requested_state
 from tarsus.errors import InputError
 from tarsus.gait.gait import Gait
 from tarsus.representation import represented
+from tarsus.robot.robot import require_leg_number
 
-__all__ = ["BODY_AXES", "Command"]
+__all__ = ["BODY_AXES", "Command", "merged", "stopped"]
 
 BODY_AXES = ("x", "y", "z", "roll", "pitch", "yaw")
 """The six axes of a body pose."""
@@ -105,6 +107,42 @@ class Command:
     def only_twist(self) -> bool:
         """Whether all of the walk but the twist stays as it is."""
         return self.foot_targets is None and self.foot_velocities is None and not self.parameters
+
+
+def merged(command: Command, before: Command, legs: int) -> Command:
+    """Return a command with what holds of the one before: what is None stays as it was, but for foot velocities.
+
+    Parameters
+    ----------
+    command, before, legs : Command, Command, int
+        The command; the one before, merged as well; the robot's number of legs.
+
+    Raises
+    ------
+    InputError
+        If the gait or a leg does not fit the robot, or the state can't be asked for.
+    UnknownNameError
+        If there is no such gait.
+    """
+    changes = command.parameters
+    if isinstance(changes.get("gait"), str):
+        changes["gait"] = Gait.named(changes["gait"], legs=legs)
+    if "gait" in changes:
+        changes["gait"].require_legs(legs)
+    if command.state is not None:
+        changes["state"] = requested_state(command.state)
+    velocities = command.foot_velocities
+    targets = {**(before.foot_targets or {}), **(command.foot_targets or {})}
+    targets = {leg: point for leg, point in targets.items() if leg not in (velocities or {})}
+    for leg in (*targets, *(velocities or {})):
+        require_leg_number("foot_targets", leg, legs)
+    return replace(before, twist=command.twist, foot_targets=targets or None, foot_velocities=velocities, **changes)
+
+
+def stopped(command: Command, legs: int) -> Command:
+    """Return the command to stand with every foot in the gait: what a robot does before it sits down."""
+    targets = dict.fromkeys(range(legs)) if command.foot_targets or command.foot_velocities else None
+    return replace(command, twist=(0.0, 0.0, 0.0), foot_targets=targets, foot_velocities=None)
 
 
 def _by_leg(name: str, given: Any, *, back: bool) -> dict[int, tuple[float, ...] | None]:

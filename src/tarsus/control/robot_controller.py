@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from tarsus.control.command import Command
+from tarsus.control.command import Command, merged, stopped
 from tarsus.control.control_output import ControlOutput
 from tarsus.control.limitation import Limitation, LimitationKind
 from tarsus.control.pose.admittance import Admittance
@@ -17,7 +17,6 @@ from tarsus.control.safety import Guard, GuardBounds, GuardState, Intervention
 from tarsus.control.sequence import MotionSequence
 from tarsus.control.startup import fold, sit_down, stand_up
 from tarsus.control.states.activity import Activity, Playing, Resting, Snapshot, Walking, way_back
-from tarsus.control.states.persistent_command import PersistentCommand, stopped
 from tarsus.control.states.reduced_walking import LegFailures
 from tarsus.control.states.robot_state import RobotState, next_state, requested_state
 from tarsus.control.terrain.roughness import GroundAdaptation
@@ -101,7 +100,8 @@ class RobotController:
         heights: dict[str, Any] = {"body_height": body_height, "swing_height": swing_height}
         self._options = heights | {"levelling": levelling, "adaptation": adaptation, "admittance": admittance}
         self.leg_failures = LegFailures(robot, **self._options)
-        self._command = PersistentCommand(robot)
+        # The last command, and with everything that holds: commands mostly stay the same object for many ticks.
+        self._given = self._command = Command()
         # Pose of the activity's ground frame in G; None where they are the same.
         self._base: Pose | None = None
         self._cycle_time, self._time, self._rates = 0.0, 0.0, np.zeros((robot.legs, 3))
@@ -159,12 +159,12 @@ class RobotController:
         """
         require_number("dt", dt, zero=False)
         command = command if isinstance(command, Command) else Command(twist=command)
-        full = self._command.merged(command)
+        full = self._command if command is self._given else merged(command, self._command, self.robot.legs)
         if self.guard is None or self.guard.state is GuardState.PASSING:
             self._advance(full, dt, readings)
         elif not isinstance(self._activity, Resting):
             self._activity.joints_held()
-        self._command.keep(command, full)
+        self._given, self._command = command, full
         self._time += dt
         self.output = self._shown(*self._guarded(dt))
         return self.output
@@ -236,7 +236,6 @@ class RobotController:
             frame = ground_frame(end.body)
             self._base = frame if self._base is None else self._base @ frame
             self._activity = self._new_walk()
-            self._command.forget_released()
         else:
             self._activity = Resting(end, playing.end, after=playing)
         after = self._activity.snapshot
@@ -249,7 +248,7 @@ class RobotController:
             yield self._rejected
         if self._goal is RobotState.STANDING and self._now.state.upright:
             return
-        command, state = self._command.full, self._now.state
+        command, state = self._command, self._now.state
         cause = f"the robot is {state}; it {'starts once it stands' if self._goal.upright else 'must stand'}"
         if any(command.twist):
             yield Limitation(kind=LimitationKind.TWIST, cause=cause, asked=1.0, granted=0.0)

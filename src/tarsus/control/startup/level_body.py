@@ -1,4 +1,4 @@
-"""Motion of the body from its initial pose to a level one, standing or lying.
+"""Level poses of the body, standing or lying, and its motion from the initial pose to one of them.
 
 Feet that bear load stay where they are while the body moves. A leg that cannot follow, or rests on its knee, is lifted
 first if the other legs can support the body without it. Legs in the air are placed on footholds that they can keep, so
@@ -19,12 +19,20 @@ from tarsus.control.startup.checks import limit_excess
 from tarsus.errors import TarsusError
 from tarsus.kinematics.folded_pose import folded_pose
 from tarsus.kinematics.inverse import inverse_kinematics
+from tarsus.kinematics.mass import centre_of_mass
+from tarsus.kinematics.pose import Pose
+from tarsus.kinematics.rotation import levelling_rotation
+from tarsus.kinematics.underside import belly_depth, underside_points
 
 if TYPE_CHECKING:
     from jaxtyping import Bool, Float
 
-__all__ = ["level_body"]
+__all__ = ["body_targets", "level_body"]
 
+# Number of body heights to try between lying and standing.
+_HEIGHTS = 6
+# How far the body may rise above its initial and its final height to make room for its legs [m].
+_EXTRA_HEIGHT = 0.04
 # Tolerance of an angle beyond its limit [rad].
 _ANGLE_TOLERANCE = 1e-7
 # Feet below this height over the ground are kept at their place, as joint backlash can explain their height [m].
@@ -36,6 +44,29 @@ _DISTANCES = np.linspace(0.3, 0.95, 14)
 _COXA_ANGLES = np.deg2rad(np.linspace(-45, 45, 13))
 # Number of reachable footholds to try for each leg, spread over near and far ones.
 _CHOICES = 6
+
+
+def body_targets(builder: SequenceBuilder, height: float) -> tuple[BodyTarget, ...]:
+    """Return the candidate level poses for a final body height [m], the most promising one first."""
+    robot, body = builder.robot, builder.body
+    up = body.rotation[2]
+    upright = levelling_rotation(body.rotation[:, 2]) @ body.rotation
+    underside = underside_points(robot)
+    on_ground = (underside @ up + builder.height) < GROUND_TOLERANCE
+    lowest = belly_depth(robot)
+    com = np.asarray(centre_of_mass(robot, builder.angles))
+    heights = np.linspace(max(height, builder.height) + _EXTRA_HEIGHT, lowest + _EXTRA_HEIGHT / 2, _HEIGHTS)
+    nearest_first = sorted(heights.tolist(), key=lambda h: abs(h - builder.height))
+    standing = [BodyTarget(_pose_above(body, upright, com, h), com, belly=False) for h in (height, *nearest_first)]
+    pivot = underside[on_ground].mean(0) if on_ground.any() else com
+    lying = BodyTarget(_pose_above(body, upright, pivot, lowest), pivot, belly=True)
+    return (lying, *standing) if on_ground.any() else (*standing, lying)
+
+
+def _pose_above(body: Pose, rotation: Float[np.ndarray, "3 3"], pivot: Float[np.ndarray, "3"], height: float) -> Pose:
+    """Return the pose with a rotation and a height that keeps the horizontal position of the pivot."""
+    position = body.position + body.rotation @ pivot - rotation @ pivot
+    return Pose(rotation, np.array([position[0], position[1], height]))
 
 
 def level_body(builder: SequenceBuilder, target: BodyTarget, stance: Float[np.ndarray, "legs 3"]) -> SequenceBuilder:

@@ -11,10 +11,9 @@ import numpy as np
 
 from tarsus.arrays import Array
 from tarsus.control.sequence.sequence import MotionSequence
-from tarsus.control.startup.body_targets import body_targets
 from tarsus.control.startup.builder import BodyTarget, SequenceBuilder
 from tarsus.control.startup.initial_state import SERVO_SPEED_SHARE, initial_state, lying_state, over_feet, uneven_state
-from tarsus.control.startup.level_body import level_body
+from tarsus.control.startup.level_body import body_targets, level_body
 from tarsus.control.startup.raise_body import lower_body, raise_body
 from tarsus.errors import InputError, TarsusError, UnreachableError
 from tarsus.gait.walk_setup import require_number

@@ -1,1 +1,1 @@
-"""The states of the robot, what it does in each, and the command that holds across them."""
+"""The states of the robot, and what it does in each."""
