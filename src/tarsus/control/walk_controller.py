@@ -18,12 +18,11 @@ from tarsus.control.terrain.body_motion import BodyMotion
 from tarsus.control.terrain.felt_ground import FeltGround
 from tarsus.control.terrain.missing_ground import SLOW
 from tarsus.control.terrain.roughness import GroundAdaptation
-from tarsus.control.tick.command_intake import CommandIntake
 from tarsus.control.tick.components import WalkComponents
 from tarsus.control.tick.estimate import estimated
 from tarsus.control.tick.integrate import integrated
 from tarsus.control.tick.limit import limited, twist_limiters
-from tarsus.control.tick.plan import planned
+from tarsus.control.tick.plan import CommandIntake, planned
 from tarsus.control.transition.executor import TransitionExecutor
 from tarsus.control.transition.planner import TransitionPlanner
 from tarsus.control.walk.foot_targets import FootTargets

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Any, TypeAlias
+from collections import Counter
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -16,7 +17,6 @@ from tarsus.control.robot_controller import RobotController
 from tarsus.control.sensing.plain_values import as_items, as_vector
 from tarsus.control.states.robot_state import RobotState
 from tarsus.gait.motion import Motion
-from tarsus.gait.spacing import default_foot_distance
 from tarsus.gait.walk_setup import WalkSetup
 from tarsus.kinematics.leg import forward_kinematics
 from tarsus.kinematics.pose import stack_poses
@@ -25,8 +25,6 @@ if TYPE_CHECKING:
     from jaxtyping import Float
 
 __all__ = ["Recorder"]
-
-_Key: TypeAlias = tuple[str, str, str, str]
 
 # A limitation that is absent for less than this is still the same one [s].
 _GAP = 0.1
@@ -52,10 +50,10 @@ class Recorder:
         self._twists = [self._command.twist]
         self._measured: list[Any] = []
         self._events: list[Event] = []
-        self._unmet: dict[tuple[Any, ...], Unmet] = {}
-        # Every limitation that is present or was lately: its event's number, and its last value.
-        self._present: dict[_Key, tuple[int, Limitation]] = {}
-        self._counts: dict[str, int] = {}
+        # Of every limitation that has not been met by the end of its command, by the number of its event.
+        self._unmet: dict[int, Unmet] = {}
+        # Every limitation that is present or was lately, by its key: its event's number, and its last value.
+        self._present: dict[tuple[str, ...], tuple[int, Limitation]] = {}
 
     @property
     def time(self) -> float:
@@ -73,22 +71,20 @@ class Recorder:
         """
         if command is self._command:
             return
-        for since, limitation in self._limited:
+        for number, limitation in self._limited:
             new, old = (_part(each, limitation.kind) for each in (command, self._command))
             if new is not None and new != old:
-                self._note_unmet(since, limitation)
+                self._note_unmet(number, limitation)
         self._command = command
 
     @property
-    def _limited(self) -> list[tuple[float, Limitation]]:
-        """Limitations of the last two ticks, as some come and go from tick to tick, and since when they are there."""
+    def _limited(self) -> list[tuple[int, Limitation]]:
+        """Limitations of the last two ticks, as some come and go from tick to tick, and the numbers of their events."""
         lately = self._times[-2:][0]
-        present = ((self._events[number], limitation) for number, limitation in self._present.values())
-        return [(event.time, limitation) for event, limitation in present if event.until >= lately]
+        return [known for known in self._present.values() if self._events[known[0]].until >= lately]
 
-    def _note_unmet(self, since: float, limitation: Limitation) -> None:
-        key = (*limitation.key, since)
-        self._unmet[key] = Unmet(since, self.time, limitation)
+    def _note_unmet(self, number: int, limitation: Limitation) -> None:
+        self._unmet[number] = Unmet(self._events[number].time, self.time, limitation)
 
     def tick(self, time: float, output: ControlOutput, readings: SensorReadings) -> None:
         """Note a tick.
@@ -102,7 +98,6 @@ class Recorder:
         self._measured.append(readings.joint_angles)
         self._times.append(time)
         for found in output.interventions:
-            self._counts[found.kind] = self._counts.get(found.kind, 0) + 1
             self.note("guard", found.text())
         if output.gait.name != before.gait.name:
             self.note("gait", f"{output.gait.name} from here on")
@@ -116,7 +111,7 @@ class Recorder:
 
     def _note_limitations(self, limitations: tuple[Limitation, ...]) -> None:
         """Note the limitations of a tick; one that comes and goes from tick to tick is one event."""
-        time, present = self.time, dict[_Key, tuple[int, Limitation]]()
+        time, present = self.time, dict[tuple[str, ...], tuple[int, Limitation]]()
         for limitation in limitations:
             number, _ = self._present.get(limitation.key, (len(self._events), limitation))
             if number == len(self._events):
@@ -128,8 +123,8 @@ class Recorder:
 
     def recording(self, *, name: str, rate: float) -> Recording:
         """Return the recording of a run of this name, with so many ticks per second [1/s]."""
-        for since, limitation in self._limited:
-            self._note_unmet(since, limitation)
+        for number, limitation in self._limited:
+            self._note_unmet(number, limitation)
         outputs = self._outputs
         twist = np.array([output.twist for output in outputs])
         guard = tuple(output.guard for output in outputs)
@@ -150,9 +145,9 @@ class Recorder:
             activities=tuple(output.activity for output in outputs),
             gaits=tuple(output.gait.name for output in outputs),
             guard=guard if any(guard) else (),
-            interventions=dict(self._counts),
+            interventions=dict(Counter(found.kind for output in outputs[1:] for found in output.interventions)),
             unmet=tuple(sorted(self._unmet.values(), key=lambda each: each.time)),
-            events=tuple(sorted(self._events, key=lambda event: event.time)),
+            events=tuple(self._events),
         )
 
     def _motion(self, twist: Float[np.ndarray, "n 3"]) -> Motion:
@@ -187,7 +182,7 @@ class Recorder:
             body_height=setup.body_height,
             swing_height=setup.swing_height,
             # Legs that are folded may come nearer to each other than walking ones.
-            foot_distance=0.0 if any(output.belly for output in outputs) else default_foot_distance(robot),
+            foot_distance=0.0 if any(output.belly for output in outputs) else setup.foot_distance,
             assumed=tuple(setup.assumed(**heights)),
         )
 
