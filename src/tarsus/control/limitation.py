@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from enum import StrEnum
-from typing import NamedTuple
+from typing import NamedTuple, Self
 
 from tarsus.representation import represented
 
@@ -14,38 +14,43 @@ __all__ = ["Cause", "Limitation", "LimitationKind"]
 _NONE = math.nan
 
 
+# Unit and scale of the numbers of a kind.
+_LENGTH, _FRACTION, _NUMBER = ("mm", 1000.0), ("%", 100.0), ("", 1.0)
+
+
 class LimitationKind(StrEnum):
-    """What of a command is not met in full; the value is the name in records and messages."""
+    """What of a command is not met in full; the value is the name in records and messages.
 
-    TWIST = "twist"
-    BODY = "body"
-    BODY_HEIGHT = "body_height"
-    SWING_HEIGHT = "swing_height"
-    STANCE_WIDTH = "stance_width"
-    GAIT = "gait"
-    CYCLE_TIME = "cycle_time"
-    SWAY = "sway"
-    FOOT_TARGET = "foot_target"
-    STATE = "state"
-    GROUND = "ground"
-    ATTITUDE = "attitude"
-    READINGS = "readings"
+    Attributes
+    ----------
+    unit : str
+        The unit in which its numbers are shown.
+    scale : float
+        How many of these units are in one SI unit.
+    """
 
+    unit: str
+    scale: float
 
-# Unit and scale of the numbers of each kind.
-_LENGTH, _FRACTION = ("mm", 1000.0), ("%", 100.0)
-_UNITS = {
-    LimitationKind.TWIST: _FRACTION,
-    LimitationKind.BODY: _FRACTION,
-    LimitationKind.BODY_HEIGHT: _LENGTH,
-    LimitationKind.SWING_HEIGHT: _LENGTH,
-    LimitationKind.STANCE_WIDTH: _LENGTH,
-    LimitationKind.CYCLE_TIME: ("s", 1.0),
-    LimitationKind.SWAY: _FRACTION,
-    LimitationKind.FOOT_TARGET: _FRACTION,
-    LimitationKind.GROUND: ("mm/s", 1000.0),
-    LimitationKind.ATTITUDE: ("deg", 180 / math.pi),
-}
+    def __new__(cls, name: str, unit: str, scale: float) -> Self:
+        """Return the member of a row of the table."""
+        kind = str.__new__(cls, name)
+        kind._value_, kind.unit, kind.scale = name, unit, scale
+        return kind
+
+    TWIST = "twist", *_FRACTION
+    BODY = "body", *_FRACTION
+    BODY_HEIGHT = "body_height", *_LENGTH
+    SWING_HEIGHT = "swing_height", *_LENGTH
+    STANCE_WIDTH = "stance_width", *_LENGTH
+    GAIT = "gait", *_NUMBER
+    CYCLE_TIME = "cycle_time", "s", 1.0
+    SWAY = "sway", *_FRACTION
+    FOOT_TARGET = "foot_target", *_FRACTION
+    STATE = "state", *_NUMBER
+    GROUND = "ground", "mm/s", 1000.0
+    ATTITUDE = "attitude", "deg", 180 / math.pi
+    READINGS = "readings", *_NUMBER
 
 
 @represented()
@@ -132,16 +137,15 @@ class Limitation:
         granted = self._value("", self.granted)
         if not granted or math.isnan(self.asked):
             return granted
-        if _UNITS.get(self.kind) is _FRACTION:
+        if self.kind.unit == "%":
             return f"{granted} of the command"
         return f"{granted} instead of {self._value('', self.asked)}"
 
     def _value(self, prefix: str, value: float) -> str:
         if math.isnan(value):
             return ""
-        unit, scale = _UNITS.get(self.kind, ("", 1.0))
-        number = f"{value * scale:.0f}" if unit == "%" else f"{value * scale:.4g}"
-        return f"{prefix}{number} {unit}".strip()
+        number = f"{value * self.kind.scale:{'.0f' if self.kind.unit == '%' else '.4g'}}"
+        return f"{prefix}{number} {self.kind.unit}".strip()
 
 
 def _margin_text(margin: float, least: float) -> str:

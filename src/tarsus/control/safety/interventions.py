@@ -8,7 +8,7 @@ from collections.abc import Mapping, Set
 from enum import StrEnum
 from operator import attrgetter
 from types import MappingProxyType
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple, Self
 
 import numpy as np
 
@@ -20,45 +20,44 @@ if TYPE_CHECKING:
 __all__ = ["GuardOutput", "GuardState", "Intervention", "InterventionKind", "InterventionLog"]
 
 
-class InterventionKind(StrEnum):
-    """What violates a bound; the value is the name in records."""
-
-    SHAPE = "shape"
-    NOT_FINITE = "not_finite"
-    TIME_STEP = "time_step"
-    TIME_GAP = "time_gap"
-    JOINT_LIMIT = "joint_limit"
-    JOINT_SPEED = "joint_speed"
-    JOINT_ACCELERATION = "joint_acceleration"
-    BRAKING_DISTANCE = "braking_distance"
-    CONTACTS = "contacts"
-    BODY_POSE = "body_pose"
-    STABILITY_MARGIN = "stability_margin"
-    FOOT_DRAG = "foot_drag"
-    FOOT_HEIGHT = "foot_height"
-    COMMAND_DISTANCE = "command_distance"
-
-
-_EXCESS = attrgetter("excess")
 _DEGREES = 57.29577951308232
 
-# Quantity, unit of display, and display units per SI unit.
-_TEXTS = {
-    InterventionKind.SHAPE: ("joint angle array", "values", 1.0),
-    InterventionKind.NOT_FINITE: ("non-finite joint angle", "deg", _DEGREES),
-    InterventionKind.TIME_STEP: ("time step", "s", 1.0),
-    InterventionKind.TIME_GAP: ("time gap", "s", 1.0),
-    InterventionKind.JOINT_LIMIT: ("joint angle", "deg", _DEGREES),
-    InterventionKind.JOINT_SPEED: ("joint speed", "deg/s", _DEGREES),
-    InterventionKind.JOINT_ACCELERATION: ("joint acceleration", "deg/s^2", _DEGREES),
-    InterventionKind.BRAKING_DISTANCE: ("braking distance", "deg", _DEGREES),
-    InterventionKind.CONTACTS: ("contact array", "values", 1.0),
-    InterventionKind.BODY_POSE: ("body rotation", "values", 1.0),
-    InterventionKind.STABILITY_MARGIN: ("stability margin", "mm", 1e3),
-    InterventionKind.FOOT_DRAG: ("foot drag", "mm", 1e3),
-    InterventionKind.FOOT_HEIGHT: ("height off the ground plane", "mm", 1e3),
-    InterventionKind.COMMAND_DISTANCE: ("distance of the command", "deg", _DEGREES),
-}
+
+class InterventionKind(StrEnum):
+    """What violates a bound; the value is the name in records.
+
+    Attributes
+    ----------
+    quantity, unit : str
+        The quantity that is bounded, and the unit in which it is shown.
+    scale : float
+        How many of these units are in one SI unit.
+    """
+
+    quantity: str
+    unit: str
+    scale: float
+
+    def __new__(cls, name: str, quantity: str, unit: str, scale: float) -> Self:
+        """Return the member of a row of the table."""
+        kind = str.__new__(cls, name)
+        kind._value_, kind.quantity, kind.unit, kind.scale = name, quantity, unit, scale
+        return kind
+
+    SHAPE = "shape", "joint angle array", "values", 1.0
+    NOT_FINITE = "not_finite", "non-finite joint angle", "deg", _DEGREES
+    TIME_STEP = "time_step", "time step", "s", 1.0
+    TIME_GAP = "time_gap", "time gap", "s", 1.0
+    JOINT_LIMIT = "joint_limit", "joint angle", "deg", _DEGREES
+    JOINT_SPEED = "joint_speed", "joint speed", "deg/s", _DEGREES
+    JOINT_ACCELERATION = "joint_acceleration", "joint acceleration", "deg/s^2", _DEGREES
+    BRAKING_DISTANCE = "braking_distance", "braking distance", "deg", _DEGREES
+    CONTACTS = "contacts", "contact array", "values", 1.0
+    BODY_POSE = "body_pose", "body rotation", "values", 1.0
+    STABILITY_MARGIN = "stability_margin", "stability margin", "mm", 1e3
+    FOOT_DRAG = "foot_drag", "foot drag", "mm", 1e3
+    FOOT_HEIGHT = "foot_height", "height off the ground plane", "mm", 1e3
+    COMMAND_DISTANCE = "command_distance", "distance of the command", "deg", _DEGREES
 
 
 @represented()
@@ -91,11 +90,11 @@ class Intervention(NamedTuple):
 
     def text(self) -> str:
         """Return the intervention as a line of text, in mm and degrees."""
-        quantity, unit, scale = _TEXTS[self.kind]
+        kind = self.kind
         place = " ".join(name for name in (self.leg, self.joint) if name)
-        value = "" if math.isnan(self.value) else f" {self.value * scale:.4g} {unit}"
-        bound = "" if math.isnan(self.bound) else f", bound {self.bound * scale:.4g} {unit}"
-        return f"{place + ': ' if place else ''}{quantity}{value}{bound}, at {self.time:.3f} s"
+        value = "" if math.isnan(self.value) else f" {self.value * kind.scale:.4g} {kind.unit}"
+        bound = "" if math.isnan(self.bound) else f", bound {self.bound * kind.scale:.4g} {kind.unit}"
+        return f"{place + ': ' if place else ''}{kind.quantity}{value}{bound}, at {self.time:.3f} s"
 
 
 class GuardState(StrEnum):
@@ -172,12 +171,12 @@ class InterventionLog:
         worst: dict[InterventionKind, Intervention] = {}
         for violation in violations:
             found = violation._replace(time=time)
-            worst[found.kind] = max(worst.get(found.kind, found), found, key=_EXCESS)
+            worst[found.kind] = max(worst.get(found.kind, found), found, key=attrgetter("excess"))
         for kind, found in worst.items():
             if kind not in self._active:
                 self._counts[kind] = self._counts.get(kind, 0) + 1
                 self.latest.append(found)
-            self._worst[kind] = max(self._worst.get(kind, found), found, key=_EXCESS)
+            self._worst[kind] = max(self._worst.get(kind, found), found, key=attrgetter("excess"))
         self._active = worst.keys()
         return tuple(worst.values())
 
