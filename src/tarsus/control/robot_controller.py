@@ -119,12 +119,11 @@ class RobotController:
         self._rejected: Limitation | None = None
         if not isinstance(guard, GuardBounds | bool | np.bool):
             raise InputError(f"guard is {guard!r}; it must be True, False or GuardBounds")
-        bounds = guard if isinstance(guard, GuardBounds) else None
-        if bounds is None and guard:
-            # Where a servo's speed is unknown, walk controller and guard have to assume the same.
-            walk = walking.controller
-            bounds = GuardBounds.of(robot, speed=walk.joint_speed, acceleration=walk.joint_acceleration)
-        self.guard = None if bounds is None else Guard(robot, bounds=bounds, start=self._now.angles)
+        # Where a servo's speed is unknown, walk controller and guard have to assume the same.
+        speed, acceleration = walking.controller.joint_speed, walking.controller.joint_acceleration
+        default = GuardBounds.of(robot, speed=speed, acceleration=acceleration)
+        bounds = guard if isinstance(guard, GuardBounds) else default
+        self.guard = Guard(robot, bounds=bounds, start=self._now.angles) if guard else None
         self._present: set[str] = set()
         self.output = self._shown(self._now.angles, ())
 
@@ -175,15 +174,14 @@ class RobotController:
         before, activity = self._now.angles, self._activity
         activity.step(command if self._goal.upright else stopped(command, self.robot.legs), dt, readings)
         if isinstance(activity, Walking):
-            self._activity = self.leg_failures.following(activity, self._now, dt)
-        if self._activity is not activity:
-            self._base = ground_frame(self._now.body) @ ground_frame(self._activity.snapshot.body).inverse()
-        self._now = self._placed(self._activity.snapshot)
-        self._rates = (self._now.angles - before) / dt
-        if isinstance(activity, Walking):
             self._shown_gait, self._cycle_time = activity.gait, activity.controller.cycle_time
+            self._activity = self.leg_failures.following(activity, self._now, dt)
+            if self._activity is not activity:
+                self._base = ground_frame(self._now.body) @ ground_frame(self._activity.snapshot.body).inverse()
         if type(activity) is Walking:
             self._gait = activity.gait
+        self._now = self._placed(self._activity.snapshot)
+        self._rates = (self._now.angles - before) / dt
         if isinstance(activity, Playing) and activity.done:
             self._end_change(activity)
 

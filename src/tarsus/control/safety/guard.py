@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from contextlib import suppress
 from typing import TYPE_CHECKING, Any, Literal, get_args
 
@@ -65,6 +64,13 @@ class Guard:
     log_size : int
         Capacity of `log`.
 
+    Attributes
+    ----------
+    bounds : GuardBounds
+        The bounds.
+    counts : mapping of InterventionKind to int
+        How many interventions of each kind began; one that lasts several ticks counts once.
+
     Raises
     ------
     InputError
@@ -98,6 +104,7 @@ class Guard:
         self._feet = FeetMonitor(robot, self.bounds)
         self._clock = GuardClock(self.bounds)
         self._log = InterventionLog(int(log_size))
+        self.counts = self._log.counts
         self._state = GuardState.PASSING
         self._time_at_rest = 0.0
         self._sit_down: SitDown | None = None
@@ -124,11 +131,6 @@ class Guard:
     def time(self) -> float:
         """Sum of all valid time steps [s]."""
         return self._clock.time
-
-    @property
-    def counts(self) -> Mapping[InterventionKind, int]:
-        """How many interventions of each kind began; one that lasts several ticks counts once."""
-        return self._log.counts
 
     @property
     def log(self) -> tuple[Intervention, ...]:

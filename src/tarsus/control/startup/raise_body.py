@@ -87,14 +87,12 @@ def _stations(
     try:
         return foothold_stations(robot, start, height, feet, swing_height=swing_height)
     except UnreachableError as error:
-        feasible = []
+        advice = "no lower body height works either"
         for body_height in np.arange(start, height, _BODY_HEIGHT_STEP).tolist():
             with suppress(UnreachableError):
                 other = default_stance(robot, body_height, swing_height=swing_height)
                 foothold_stations(robot, start, body_height, other, swing_height=swing_height)
-                feasible.append(body_height)
-        works = f"a body height of {feasible[-1] * 1000:.1f} mm works" if feasible else ""
-        advice = works or "no lower body height works either"
+                advice = f"a body height of {body_height * 1000:.1f} mm works"
         raise UnreachableError(f"raising the body to {height * 1000:.1f} mm: {error}; {advice}") from None
 
 

@@ -14,7 +14,7 @@ from tarsus.control.command import Command
 from tarsus.control.limitation import Limitation, LimitationKind
 from tarsus.control.readings import CHANNELS, SensorReadings, Vector
 from tarsus.control.sensing.plain_values import as_items, as_vector
-from tarsus.control.sensing.servo_monitor import FailedJoints, ServoMonitor
+from tarsus.control.sensing.servo_monitor import ServoMonitor
 from tarsus.control.states.activity import Activity, Snapshot, Walking
 from tarsus.control.states.braking import Braking
 from tarsus.control.states.robot_state import RobotState
@@ -203,21 +203,19 @@ class LegFailures:
         A single robot.
     options
         As for `WalkController`.
+
+    Attributes
+    ----------
+    failed : FailedJoints
+        Legs that have failed, and the joint; to be changed by who knows better. A leg that is removed from it is used
+        again once the robot has lain. Legs and joints that the robot does not have are refused.
     """
 
     def __init__(self, robot: Robot, **options: Any) -> None:
         stall = np.array([[at_supply(servo, None)[0] for servo in row] for row in robot.servos])
         self._robot, self._options, self._monitor = robot, options, ServoMonitor(stall)
+        self.failed = self._monitor.failed
         self._not_walkable, self._cause = dict[int, int](), ""
-
-    @property
-    def failed(self) -> FailedJoints:
-        """Legs that have failed, and the joint; to be changed by who knows better.
-
-        A leg that is removed from it is used again once the robot has lain. Legs and joints that the robot does not
-        have are refused.
-        """
-        return self._monitor.failed
 
     def following(self, activity: Walking, now: Snapshot, dt: float) -> Walking:
         """Return the activity that follows after a tick: another one where another leg has failed.
@@ -265,5 +263,5 @@ class LegFailures:
     def limitations(self) -> tuple[Limitation, ...]:
         """Why the robot sits down."""
         names = " and ".join(self._robot.leg_names[leg] for leg in self.failed)
-        kind = LimitationKind.STATE
-        return (Limitation(kind=kind, cause=f"{_SITS}: {self._cause}", leg=names),) if self.sits else ()
+        found = Limitation(kind=LimitationKind.STATE, cause=f"{_SITS}: {self._cause}", leg=names)
+        return (found,) if self.sits else ()
