@@ -1,9 +1,9 @@
-"""What a robot controller gives for each tick."""
+"""What the robot does in an activity, and what a robot controller makes of it for each tick."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -17,7 +17,46 @@ from tarsus.representation import represented
 if TYPE_CHECKING:
     from jaxtyping import Bool, Float
 
-__all__ = ["ControlOutput"]
+__all__ = ["ControlOutput", "Snapshot"]
+
+
+class Snapshot(NamedTuple):
+    """The robot in an activity; poses and points are in the activity's own ground frame.
+
+    Attributes
+    ----------
+    angles : array, shape (legs, 3)
+        Joint angles [rad].
+    body : Pose
+        The body's pose.
+    feet : array, shape (legs, 3), or None
+        The feet [m]; None where they follow from angles and body.
+    contacts : array of bool, shape (legs,)
+        Which feet are on the ground.
+    belly : bool
+        Whether the body rests on the ground.
+    state : RobotState
+        What the robot does.
+    activity : str
+        What it does in detail.
+    twist : tuple of float
+        Speed of the walk: forward, left [m/s], turning [rad/s].
+    limitations : tuple of Limitation
+        Why the command is not met in full.
+    felt : bool
+        Whether the feet follow ground that is felt, which need not be a plane.
+    """
+
+    angles: Float[np.ndarray, "legs 3"]
+    body: Pose
+    feet: Float[np.ndarray, "legs 3"] | None
+    contacts: Bool[np.ndarray, "legs"]
+    belly: bool
+    state: RobotState
+    activity: str
+    twist: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    limitations: tuple[Limitation, ...] = ()
+    felt: bool = False
 
 
 @represented(

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from tarsus.control.command import Command, merged, stopped
-from tarsus.control.control_output import ControlOutput
+from tarsus.control.control_output import ControlOutput, Snapshot
 from tarsus.control.limitation import Limitation, LimitationKind
 from tarsus.control.pose.admittance import Admittance
 from tarsus.control.pose.posture_feedback import Levelling
@@ -16,7 +16,7 @@ from tarsus.control.readings import SensorReadings
 from tarsus.control.safety import Guard, GuardBounds, GuardState, Intervention
 from tarsus.control.sequence import MotionSequence
 from tarsus.control.startup import fold, sit_down, stand_up
-from tarsus.control.states.activity import Activity, Playing, Resting, Snapshot, Walking, way_back
+from tarsus.control.states.activity import Activity, Playing, Resting, Walking, way_back
 from tarsus.control.states.reduced_walking import LegFailures
 from tarsus.control.states.robot_state import RobotState, next_state, requested_state
 from tarsus.control.terrain.roughness import GroundAdaptation

@@ -2,17 +2,18 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, NamedTuple, Self, TypeAlias
+from typing import TYPE_CHECKING, Any, Self, TypeAlias
 
 import numpy as np
 
+from tarsus.arrays import read_only
 from tarsus.control.command import Command
+from tarsus.control.control_output import Snapshot
 from tarsus.control.limitation import Limitation
 from tarsus.control.readings import SensorReadings, ValidReadings
 from tarsus.control.sensing.validation import ReadingsValidator, rejections
 from tarsus.control.sequence import MotionSequence, SequencePlayer, SequenceSample
 from tarsus.control.startup import fold, sit_down
-from tarsus.control.states.braking import Braking
 from tarsus.control.states.robot_state import RobotState
 from tarsus.control.walk_controller import WalkController
 from tarsus.control.walk_state import WalkState
@@ -25,46 +26,10 @@ from tarsus.robot.robot import Robot
 if TYPE_CHECKING:
     from jaxtyping import Bool, Float
 
-__all__ = ["Activity", "Playing", "Resting", "Snapshot", "Walking", "way_back"]
+__all__ = ["Activity", "Braking", "Playing", "Resting", "Walking", "way_back"]
 
-
-class Snapshot(NamedTuple):
-    """The robot in an activity; poses and points are in the activity's own ground frame.
-
-    Attributes
-    ----------
-    angles : array, shape (legs, 3)
-        Joint angles [rad].
-    body : Pose
-        The body's pose.
-    feet : array, shape (legs, 3), or None
-        The feet [m]; None where they follow from angles and body.
-    contacts : array of bool, shape (legs,)
-        Which feet are on the ground.
-    belly : bool
-        Whether the body rests on the ground.
-    state : RobotState
-        What the robot does.
-    activity : str
-        What it does in detail.
-    twist : tuple of float
-        Speed of the walk: forward, left [m/s], turning [rad/s].
-    limitations : tuple of Limitation
-        Why the command is not met in full.
-    felt : bool
-        Whether the feet follow ground that is felt, which need not be a plane.
-    """
-
-    angles: Float[np.ndarray, "legs 3"]
-    body: Pose
-    feet: Float[np.ndarray, "legs 3"] | None
-    contacts: Bool[np.ndarray, "legs"]
-    belly: bool
-    state: RobotState
-    activity: str
-    twist: tuple[float, float, float] = (0.0, 0.0, 0.0)
-    limitations: tuple[Limitation, ...] = ()
-    felt: bool = False
+# Fraction of the joints' acceleration with which they lose the speed that they have.
+_SHARE = 0.8
 
 
 class Walking:
@@ -130,6 +95,40 @@ class Walking:
             limitations=(*walk.limitations, *self._rejected),
             felt=walk.feels_ground,
         )
+
+
+class Braking:
+    """Joints that lose the speed that they have at constant deceleration, before their limits.
+
+    Parameters
+    ----------
+    robot : Robot
+        A single robot.
+    angles, speeds : array, shape (legs, 3)
+        Joint angles [rad] and speeds [rad/s] at the start.
+    acceleration : array
+        Greatest accelerations of the joints, of which the least counts [rad/s^2].
+
+    Attributes
+    ----------
+    duration : float
+        Time until all joints are at rest [s].
+    """
+
+    def __init__(
+        self, robot: Robot, angles: Float[np.ndarray, "legs 3"], speeds: Float[np.ndarray, "legs 3"], acceleration: Any
+    ) -> None:
+        self._angles, self._speeds = angles, speeds
+        low, high = np.moveaxis(np.asarray(robot.limits), -1, 0)
+        room = np.where(speeds > 0, high - angles, angles - low).clip(0.0)
+        stopping = np.abs(speeds) / (_SHARE * float(np.min(acceleration)))
+        self._stopping = np.minimum(stopping, 2 * room / np.abs(speeds).clip(1e-9)).clip(1e-9)
+        self.duration = float(self._stopping.max())
+
+    def at(self, time: float) -> Float[np.ndarray, "legs 3"]:
+        """Return the joint angles at a time after the start [rad]: array, shape (legs, 3), read-only."""
+        share = np.minimum(time / self._stopping, 1.0)
+        return read_only(self._angles + self._speeds * self._stopping * share * (1 - share / 2))
 
 
 class Playing:
@@ -262,10 +261,9 @@ class Resting:
         InputError
             If they are not finite, or not one for each joint.
         """
-        found = np.array(angles, dtype=float)
+        found = read_only(np.array(angles, dtype=float))
         if found.shape != (robot.legs, 3) or not np.isfinite(found).all():
             raise InputError(f"angles must be {robot.legs} x 3 finite numbers [rad]")
-        found.setflags(write=False)
         contacts = np.zeros(robot.legs, dtype=bool)
         sample = SequenceSample(found, contacts, resting_pose(robot, found).body, str(RobotState.LYING), belly=True)
         return cls(sample, RobotState.LYING)

@@ -11,12 +11,12 @@ import numpy as np
 
 from tarsus.arrays import read_only
 from tarsus.control.command import Command
+from tarsus.control.control_output import Snapshot
 from tarsus.control.limitation import Limitation, LimitationKind
 from tarsus.control.readings import CHANNELS, SensorReadings, Vector
 from tarsus.control.sensing.plain_values import as_items, as_vector
 from tarsus.control.sensing.servo_monitor import ServoMonitor
-from tarsus.control.states.activity import Activity, Snapshot, Walking
-from tarsus.control.states.braking import Braking
+from tarsus.control.states.activity import Activity, Braking, Walking
 from tarsus.control.states.robot_state import RobotState
 from tarsus.control.walk_controller import WalkController
 from tarsus.errors import TarsusError
