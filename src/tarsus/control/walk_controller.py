@@ -15,7 +15,6 @@ from tarsus.control.pose.posture_feedback import Levelling
 from tarsus.control.readings import SensorReadings, ValidReadings
 from tarsus.control.sensing.foot_loads import FootLoads
 from tarsus.control.terrain.body_motion import BodyMotion
-from tarsus.control.terrain.felt_ground import FeltGround
 from tarsus.control.terrain.missing_ground import SLOW
 from tarsus.control.terrain.roughness import GroundAdaptation
 from tarsus.control.tick.components import WalkComponents
@@ -23,12 +22,7 @@ from tarsus.control.tick.estimate import estimated
 from tarsus.control.tick.integrate import integrated
 from tarsus.control.tick.limit import limited, twist_limiters
 from tarsus.control.tick.plan import CommandIntake, planned
-from tarsus.control.transition.executor import TransitionExecutor
 from tarsus.control.transition.planner import TransitionPlanner
-from tarsus.control.walk.foot_targets import FootTargets
-from tarsus.control.walk.joint_solver import JointSolver
-from tarsus.control.walk.state import GaitState
-from tarsus.control.walk.time_scaling import TimeScaling
 from tarsus.control.walk_state import TickState, WalkState
 from tarsus.errors import InputError
 from tarsus.gait.gait import Gait
@@ -119,27 +113,15 @@ class WalkController:
         self.joint_speed, self.joint_acceleration = limits
         planner = TransitionPlanner(self.robot, limits, foot_distance=setup.foot_distance)
         stance = planner.initial_stance(setup, stance_width=stance_width, cycle_time=cycle_time)
-        foot_targets, solver = FootTargets(self.robot), JointSolver(self.robot)
         adaptation = GroundAdaptation() if adaptation is None else adaptation
         for name, value, kind in (("adaptation", adaptation, GroundAdaptation), ("admittance", admittance, Admittance)):
             if value is not None and not isinstance(value, kind):
                 raise InputError(f"{name} is {value!r}; it must be of class {kind.__name__}")
         body = BodyMotion(self.robot, levelling=levelling, adaptation=adaptation)
-        transitions = TransitionExecutor(stance, foot_targets, scale=body.reach.scale)
-        state = GaitState.standing(stance.rest, transitions.pose.target)
-        time_scaling = TimeScaling(solver.angles(state), limits, self.robot.limits)
         loads = FootLoads(self.robot, admittance)
-        self._walk = WalkComponents(
-            robot=self.robot,
-            planner=planner,
-            transitions=transitions,
-            foot_targets=foot_targets,
-            ground=FeltGround(self.robot, time_scaling.angles, body=body, loads=loads),
-            solver=solver,
-            time_scaling=time_scaling,
-        )
-        self._tick = TickState(state, np.zeros(3))
-        self._intake = CommandIntake(self.robot, transitions)
+        self._walk = WalkComponents(self.robot, limits, planner=planner, stance=stance, body=body, loads=loads)
+        self._tick = TickState(self._walk.initial, np.zeros(3))
+        self._intake = CommandIntake(self.robot, self._walk.transitions)
         self._twist_limiters = twist_limiters(self._walk)
 
     def step(

@@ -2,22 +2,33 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
+from tarsus.control.sensing.foot_loads import FootLoads
+from tarsus.control.terrain.body_motion import BodyMotion
 from tarsus.control.terrain.felt_ground import FeltGround
 from tarsus.control.transition.executor import TransitionExecutor
 from tarsus.control.transition.planner import TransitionPlanner
+from tarsus.control.transition.stance_transition import StanceTransition
 from tarsus.control.walk.foot_targets import FootTargets
 from tarsus.control.walk.joint_solver import JointSolver
+from tarsus.control.walk.state import GaitState
 from tarsus.control.walk.time_scaling import TimeScaling
+from tarsus.robot.joint_limits import JointLimits
 from tarsus.robot.robot import Robot
 
 __all__ = ["WalkComponents"]
 
 
-@dataclass(frozen=True, eq=False, kw_only=True)
 class WalkComponents:
     """The components of a walk controller; all its state besides the gait state and the twist is in them.
+
+    Parameters
+    ----------
+    robot, limits : Robot, JointLimits
+        The robot; greatest speeds and accelerations of its joints.
+    planner, stance : TransitionPlanner, StanceTransition
+        Plans stance transitions; the stance at the start.
+    body, loads : BodyMotion, FootLoads
+        How the body moves on ground that is felt; the loads of the feet.
 
     Attributes
     ----------
@@ -35,12 +46,23 @@ class WalkComponents:
         Solves gait states for joint angles.
     time_scaling : TimeScaling
         The joint angles, and the rate of the walk's time.
+    initial : GaitState
+        The gait state at the start.
     """
 
-    robot: Robot
-    planner: TransitionPlanner
-    transitions: TransitionExecutor
-    foot_targets: FootTargets
-    ground: FeltGround
-    solver: JointSolver
-    time_scaling: TimeScaling
+    def __init__(
+        self,
+        robot: Robot,
+        limits: JointLimits,
+        *,
+        planner: TransitionPlanner,
+        stance: StanceTransition,
+        body: BodyMotion,
+        loads: FootLoads,
+    ) -> None:
+        self.robot, self.planner = robot, planner
+        self.foot_targets, self.solver = FootTargets(robot), JointSolver(robot)
+        self.transitions = TransitionExecutor(stance, self.foot_targets, scale=body.reach.scale)
+        self.initial = GaitState.standing(stance.rest, self.transitions.pose.target)
+        self.time_scaling = TimeScaling(self.solver.angles(self.initial), limits, robot.limits)
+        self.ground = FeltGround(robot, self.time_scaling.angles, body=body, loads=loads)
