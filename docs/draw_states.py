@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from tarsus import RobotState
-from tarsus.control.states.robot_state import REQUESTABLE, TRANSITIONS
+from tarsus.control.robot_state import REQUESTABLE, TRANSITIONS
 from tarsus.report.style import INK, PALE, WARNING, new_figure
 
 if TYPE_CHECKING:

@@ -11,8 +11,8 @@ from tarsus.control.limitation import LimitationKind
 from tarsus.control.plant import IdealPlant
 from tarsus.control.readings import SensorReadings
 from tarsus.control.robot_controller import RobotController
+from tarsus.control.robot_state import REQUESTABLE, TRANSITIONS, RobotState, next_state, requested_state
 from tarsus.control.safety import GuardBounds
-from tarsus.control.states.robot_state import REQUESTABLE, TRANSITIONS, RobotState, next_state, requested_state
 from tarsus.control.walk_controller import WalkController
 from tarsus.errors import InputError, TarsusError, UnknownNameError
 from tarsus.gait.gait import Gait

@@ -30,10 +30,10 @@ if TYPE_CHECKING:
     from tarsus.control.pose.admittance import Admittance
     from tarsus.control.readings import SensorReadings
     from tarsus.control.robot_controller import RobotController
+    from tarsus.control.robot_state import RobotState
     from tarsus.control.safety import Guard, GuardBounds, GuardOutput, GuardState, Intervention, InterventionKind
     from tarsus.control.sequence import MotionSequence, SequencePlayer
     from tarsus.control.startup import fold, power_off_order, sit_down, stand_up
-    from tarsus.control.states.robot_state import RobotState
     from tarsus.control.terrain.roughness import GroundAdaptation
     from tarsus.control.walk_controller import WalkController
     from tarsus.errors import (
@@ -152,7 +152,7 @@ _HOMES = {
         "Plant",
     ),
     "tarsus.control.robot_controller": ("RobotController",),
-    "tarsus.control.states.robot_state": ("RobotState",),
+    "tarsus.control.robot_state": ("RobotState",),
     "tarsus.control.loop.run": ("run",),
     "tarsus.control.readings": ("SensorReadings",),
     "tarsus.control.sequence": ("MotionSequence", "SequencePlayer"),

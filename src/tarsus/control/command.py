@@ -8,7 +8,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any, Literal
 
-from tarsus.control.states.robot_state import requested_state
+from tarsus.control.robot_state import requested_state
 from tarsus.errors import InputError
 from tarsus.gait.gait import Gait
 from tarsus.representation import represented

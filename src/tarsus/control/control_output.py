@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from tarsus.control.limitation import Limitation
+from tarsus.control.robot_state import RobotState
 from tarsus.control.safety import Intervention
-from tarsus.control.states.robot_state import RobotState
 from tarsus.gait.gait import Gait
 from tarsus.kinematics.pose import Pose
 from tarsus.representation import represented

@@ -13,12 +13,12 @@ from tarsus.control.limitation import Limitation, LimitationKind
 from tarsus.control.pose.admittance import Admittance
 from tarsus.control.pose.posture_feedback import Levelling
 from tarsus.control.readings import SensorReadings
+from tarsus.control.robot_state import RobotState, next_state, requested_state
 from tarsus.control.safety import Guard, GuardBounds, GuardState, Intervention
 from tarsus.control.sequence import MotionSequence
 from tarsus.control.startup import fold, sit_down, stand_up
-from tarsus.control.states.activity import Activity, Playing, Resting, Walking, way_back
+from tarsus.control.states.activity import Activity, Braking, Playing, Resting, Walking, way_back
 from tarsus.control.states.reduced_walking import LegFailures
-from tarsus.control.states.robot_state import RobotState, next_state, requested_state
 from tarsus.control.terrain.roughness import GroundAdaptation
 from tarsus.control.walk_controller import WalkController
 from tarsus.errors import InputError, TarsusError
@@ -200,7 +200,10 @@ class RobotController:
             self._activity.turn(back=not self._activity.leads_to(goal))
             return
         change, now = self._next_change(), self._now
-        braking = None if self._at_rest else self.leg_failures.braking(self._activity, now.angles, self._rates)
+        braking = None
+        if self.leg_failures.sits and isinstance(self._activity, Walking) and not self._at_rest:
+            acceleration = self._activity.controller.joint_acceleration
+            braking = Braking(self.robot, now.angles, self._rates, acceleration)
         if change is None or not (self._at_rest or braking):
             return
         try:

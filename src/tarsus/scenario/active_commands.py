@@ -11,8 +11,8 @@ from tarsus.control.control_output import ControlOutput
 from tarsus.control.limitation import LimitationKind
 from tarsus.control.loop.run import AFTER, LONGEST
 from tarsus.control.plant import Environment
+from tarsus.control.robot_state import RobotState
 from tarsus.control.startup import power_off_order
-from tarsus.control.states.robot_state import RobotState
 from tarsus.robot.robot import Robot
 from tarsus.scenario.commands import (
     BodyHeight,

@@ -8,7 +8,7 @@ from tarsus.control.loop.recording import Recording
 from tarsus.control.loop.run import run
 from tarsus.control.plant import IdealPlant, Plant
 from tarsus.control.robot_controller import RobotController
-from tarsus.control.states.robot_state import RobotState
+from tarsus.control.robot_state import RobotState
 from tarsus.errors import InputError
 from tarsus.gait.gait import Gait
 from tarsus.robot.file import load_robot

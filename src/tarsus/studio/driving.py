@@ -7,7 +7,7 @@ from typing import Protocol
 from tarsus.control.command import Command
 from tarsus.control.plant import IdealPlant, Plant
 from tarsus.control.robot_controller import RobotController
-from tarsus.control.states.robot_state import next_state, requested_state
+from tarsus.control.robot_state import next_state, requested_state
 from tarsus.errors import TarsusError
 from tarsus.robot.robot import Robot
 from tarsus.studio.drive_frames import DriveFrames, command_of

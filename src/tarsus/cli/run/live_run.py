@@ -20,7 +20,7 @@ from tarsus.control.loop.run import CommandSource
 from tarsus.control.loop.run import run as run_loop
 from tarsus.control.plant import Plant
 from tarsus.control.robot_controller import RobotController
-from tarsus.control.states.robot_state import RobotState
+from tarsus.control.robot_state import RobotState
 from tarsus.errors import InputError, ServoFaultError
 from tarsus.hardware.calibration.blank import nominal_calibration
 from tarsus.hardware.calibration.bus_commands import bus_commands, usual_bus

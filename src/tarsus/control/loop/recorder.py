@@ -14,8 +14,8 @@ from tarsus.control.limitation import Limitation, LimitationKind
 from tarsus.control.loop.recording import Event, Recording, Unmet
 from tarsus.control.readings import SensorReadings
 from tarsus.control.robot_controller import RobotController
+from tarsus.control.robot_state import RobotState
 from tarsus.control.sensing.plain_values import as_items, as_vector
-from tarsus.control.states.robot_state import RobotState
 from tarsus.gait.motion import Motion
 from tarsus.gait.walk_setup import WalkSetup
 from tarsus.kinematics.leg import forward_kinematics

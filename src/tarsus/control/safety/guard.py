@@ -11,13 +11,7 @@ from tarsus.arrays import Array, read_only
 from tarsus.control.safety.bounds import GuardBounds
 from tarsus.control.safety.feet_monitor import FeetMonitor
 from tarsus.control.safety.inputs import GuardClock, read_angles, read_contacts, read_up
-from tarsus.control.safety.interventions import (
-    GuardOutput,
-    GuardState,
-    Intervention,
-    InterventionKind,
-    InterventionLog,
-)
+from tarsus.control.safety.interventions import GuardOutput, GuardState, Intervention, InterventionKind, InterventionLog
 from tarsus.control.safety.joint_monitor import JointMonitor
 from tarsus.control.safety.sit_down import SitDown
 from tarsus.errors import InputError, TarsusError, UnknownNameError

@@ -1,1 +1,1 @@
-"""The states of the robot, and what it does in each."""
+"""What the robot does in each of its states."""

@@ -11,10 +11,10 @@ from tarsus.control.command import Command
 from tarsus.control.control_output import Snapshot
 from tarsus.control.limitation import Limitation
 from tarsus.control.readings import SensorReadings, ValidReadings
+from tarsus.control.robot_state import RobotState
 from tarsus.control.sensing.validation import ReadingsValidator, rejections
 from tarsus.control.sequence import MotionSequence, SequencePlayer, SequenceSample
 from tarsus.control.startup import fold, sit_down
-from tarsus.control.states.robot_state import RobotState
 from tarsus.control.walk_controller import WalkController
 from tarsus.control.walk_state import WalkState
 from tarsus.errors import InputError

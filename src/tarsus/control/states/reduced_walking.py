@@ -14,10 +14,10 @@ from tarsus.control.command import Command
 from tarsus.control.control_output import Snapshot
 from tarsus.control.limitation import Limitation, LimitationKind
 from tarsus.control.readings import CHANNELS, SensorReadings, Vector
+from tarsus.control.robot_state import RobotState
 from tarsus.control.sensing.plain_values import as_items, as_vector
 from tarsus.control.sensing.servo_monitor import ServoMonitor
-from tarsus.control.states.activity import Activity, Braking, Walking
-from tarsus.control.states.robot_state import RobotState
+from tarsus.control.states.activity import Braking, Walking
 from tarsus.control.walk_controller import WalkController
 from tarsus.errors import TarsusError
 from tarsus.gait.gait import Gait
@@ -242,22 +242,6 @@ class LegFailures:
     def sits(self) -> bool:
         """Whether the robot has to sit down."""
         return bool(self._not_walkable) and self._not_walkable.keys() <= self.failed.keys()
-
-    def braking(
-        self, activity: Activity, angles: Float[np.ndarray, "legs 3"], speeds: Float[np.ndarray, "legs 3"]
-    ) -> Braking | None:
-        """Return how the joints come to rest where the robot has to sit down in the middle of a walk; else None.
-
-        Parameters
-        ----------
-        activity : Activity
-            The present one.
-        angles, speeds : array, shape (legs, 3)
-            Joint angles [rad] and speeds [rad/s] now.
-        """
-        if not (self.sits and isinstance(activity, Walking)):
-            return None
-        return Braking(self._robot, angles, speeds, activity.controller.joint_acceleration)
 
     @property
     def limitations(self) -> tuple[Limitation, ...]:

@@ -9,7 +9,7 @@ from typing import Protocol
 from tarsus.control.command import Command
 from tarsus.control.control_output import ControlOutput
 from tarsus.control.loop.run import CommandSource
-from tarsus.control.states.robot_state import RobotState
+from tarsus.control.robot_state import RobotState
 
 __all__ = ["Rising", "Supervised"]
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from tarsus.control.control_output import ControlOutput
 from tarsus.control.readings import SensorReadings
-from tarsus.control.states.robot_state import RobotState
+from tarsus.control.robot_state import RobotState
 from tarsus.errors import InputError
 from tarsus.gait.motion import Motion
 from tarsus.representation import represented

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from tarsus.control.control_output import ControlOutput
-from tarsus.control.states.robot_state import RobotState
+from tarsus.control.robot_state import RobotState
 from tarsus.robot.robot import JOINTS, Robot
 from tarsus.simulation.plant_state import PlantState
 from tarsus.simulation.simulated_plant import SimulatedPlant
