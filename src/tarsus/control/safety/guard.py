@@ -10,7 +10,7 @@ import numpy as np
 from tarsus.arrays import Array, read_only
 from tarsus.control.safety.bounds import GuardBounds
 from tarsus.control.safety.feet_monitor import FeetMonitor
-from tarsus.control.safety.inputs import GuardClock, read_angles, read_contacts, read_up
+from tarsus.control.safety.inputs import read_angles, read_contacts, read_time_step, read_up
 from tarsus.control.safety.interventions import GuardOutput, GuardState, Intervention, InterventionKind, InterventionLog
 from tarsus.control.safety.joint_monitor import JointMonitor
 from tarsus.control.safety.sit_down import SitDown
@@ -64,6 +64,8 @@ class Guard:
         The bounds.
     counts : mapping of InterventionKind to int
         How many interventions of each kind began; one that lasts several ticks counts once.
+    time : float
+        Sum of all valid time steps [s].
 
     Raises
     ------
@@ -96,7 +98,8 @@ class Guard:
         self._robot, self._policy, self._recover = robot, policy, recover
         self._joints = JointMonitor(robot, self.bounds)
         self._feet = FeetMonitor(robot, self.bounds)
-        self._clock = GuardClock(self.bounds)
+        # Time steps that are too short accumulate until they are long enough.
+        self.time = self._pending = 0.0
         self._log = InterventionLog(int(log_size))
         self.counts = self._log.counts
         self._state = GuardState.PASSING
@@ -120,11 +123,6 @@ class Guard:
     def state(self) -> GuardState:
         """Current state of the guard."""
         return self._state
-
-    @property
-    def time(self) -> float:
-        """Sum of all valid time steps [s]."""
-        return self._clock.time
 
     @property
     def log(self) -> tuple[Intervention, ...]:
@@ -162,7 +160,10 @@ class Guard:
         GuardOutput
             The joint angles to send, and the violations of the command.
         """
-        step, violations = self._clock.advance(dt)
+        passed, violations = read_time_step(dt, self.bounds)
+        self._pending += passed
+        step = self._pending if self._pending >= self.bounds.min_time_step else 0.0
+        self.time, self._pending = self.time + step, self._pending - step
         parsed = read_angles(angles, self._joints.names)
         command = None if isinstance(parsed, Intervention) else parsed
         if isinstance(parsed, Intervention):

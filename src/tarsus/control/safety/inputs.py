@@ -12,7 +12,7 @@ from tarsus.control.safety.interventions import Intervention, InterventionKind
 from tarsus.control.safety.scalar_geometry import Point
 from tarsus.kinematics.pose import Pose
 
-__all__ = ["GuardClock", "read_angles", "read_contacts", "read_up"]
+__all__ = ["read_angles", "read_contacts", "read_time_step", "read_up"]
 
 _NUMERIC_KINDS = "fiu"
 # A longer time step is invalid rather than a gap [s].
@@ -82,43 +82,23 @@ def read_up(body: Any) -> Point | Intervention:
     return Intervention(InterventionKind.BODY_POSE, "", "", size, 9.0)
 
 
-class GuardClock:
-    """Sums the valid time steps; steps that are too short accumulate until they are long enough.
-
-    Attributes
-    ----------
-    time : float
-        Sum of all valid time steps [s].
+def read_time_step(dt: Any, bounds: GuardBounds) -> tuple[float, list[Intervention]]:
+    """Return the time that has passed, 0 for an invalid time step, and the violations.
 
     Parameters
     ----------
+    dt : any
+        Time step as given [s].
     bounds : GuardBounds
         Bounds of the time step.
     """
-
-    def __init__(self, bounds: GuardBounds) -> None:
-        self._shortest, self._longest = bounds.min_time_step, bounds.max_time_step
-        self._pending = self.time = 0.0
-
-    def advance(self, dt: Any) -> tuple[float, list[Intervention]]:
-        """Advance the clock; return the time step to use, 0 for none, and the violations.
-
-        Parameters
-        ----------
-        dt : any
-            Time step as given [s].
-        """
-        dt = _number(dt)
-        if 0 < dt <= _LONGEST_GAP:
-            self._pending += dt
-        step = self._pending if self._pending >= self._shortest else 0.0
-        if step > 0:
-            self.time, self._pending = self.time + step, 0.0
-        if self._shortest <= dt <= self._longest:
-            return step, []
-        if self._longest < dt <= _LONGEST_GAP:
-            return step, [Intervention(InterventionKind.TIME_GAP, "", "", dt, self._longest)]
-        return step, [Intervention(InterventionKind.TIME_STEP, "", "", dt, self._shortest)]
+    dt = _number(dt)
+    passed = dt if 0 < dt <= _LONGEST_GAP else 0.0
+    if bounds.min_time_step <= dt <= bounds.max_time_step:
+        return passed, []
+    if bounds.max_time_step < dt <= _LONGEST_GAP:
+        return passed, [Intervention(InterventionKind.TIME_GAP, "", "", dt, bounds.max_time_step)]
+    return passed, [Intervention(InterventionKind.TIME_STEP, "", "", dt, bounds.min_time_step)]
 
 
 def _number(dt: Any) -> float:
