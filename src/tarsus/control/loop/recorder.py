@@ -28,9 +28,6 @@ __all__ = ["Recorder"]
 
 # A limitation that is absent for less than this is still the same one [s].
 _GAP = 0.1
-_CHANGES = (RobotState.RISING, RobotState.SITTING, RobotState.FOLDING)
-# Limitations of these kinds are about no part of a command, and so about all of it.
-_NOT_COMMANDED = (LimitationKind.GROUND, LimitationKind.ATTITUDE, LimitationKind.READINGS)
 
 
 class Recorder:
@@ -103,7 +100,7 @@ class Recorder:
             self.note("gait", f"{output.gait.name} from here on")
         if output.state != before.state and RobotState.FAULT in (output.state, before.state):
             self.note("state", str(output.state))
-        if output.activity != before.activity and output.state in _CHANGES:
+        if output.activity != before.activity and output.state.end is not output.state:
             self.note("stage", output.activity)
         self._note_limitations(output.limitations)
         self._outputs.append(output)
@@ -194,9 +191,7 @@ def _vectors(values: Any, legs: int) -> Float[np.ndarray, "legs 3"]:
 
 
 def _part(command: Command, kind: LimitationKind) -> Any:
-    """Return the part of a command that limitations of a kind are about; None leaves it as it is."""
-    if kind in _NOT_COMMANDED:
-        return command
+    """Return the part of a command that limitations of a kind are about, else all of it; None leaves it as it is."""
     if kind is LimitationKind.FOOT_TARGET:
         return command.foot_targets or command.foot_velocities
-    return getattr(command, kind.value)
+    return getattr(command, kind.value, command)

@@ -40,8 +40,6 @@ _CAUSE = "the joint has failed: the robot walks on without this leg"
 _FEMUR_UP, _FROM_LIMIT = 1.0, 0.1
 # Fraction of the joints' speed with which the legs move to their new stance, and the least time [s].
 _SPEED_SHARE, _LEAST_TIME = 0.15, 1.0
-# Channels that are not measured for each leg.
-_OF_BODY = ("attitude", "angular_rates", "ground")
 
 
 class ReducedWalking(Walking):
@@ -158,7 +156,7 @@ class ReducedWalking(Walking):
 
     def _of_legs(self, readings: SensorReadings) -> SensorReadings:
         """Return the readings of the legs that are left."""
-        values = self._left({name: getattr(readings, name) for name in CHANNELS if name not in _OF_BODY})
+        values = self._left({name: getattr(readings, name) for name in CHANNELS})
         if "joint_angles" in values:
             values["joint_angles"] = _turned(map(as_vector, values["joint_angles"]), -self._zero[:, 0])
         ages = dict(readings.age) | self._left(readings.age) if isinstance(readings.age, dict) else readings.age
