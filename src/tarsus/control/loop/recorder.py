@@ -155,8 +155,7 @@ class Recorder:
         feet = np.array([output.feet for output in outputs])
         # Where the guard gave out other angles, the feet are where these take them; the body's pose is as commanded.
         held = np.array([output.state is RobotState.FAULT for output in outputs])
-        if held.any():
-            feet[held] = (body @ forward_kinematics(robot, angles)[..., 3, :])[held]
+        feet[held] = (body @ forward_kinematics(robot, angles)[..., 3, :])[held]
         heights: dict[str, Any] = {"body_height": controller.body_height, "swing_height": controller.swing_height}
         setup = WalkSetup.of(robot, outputs[0].gait, **heights)
         # The speed of each foot at rest against the body.

@@ -120,15 +120,11 @@ class GuardBounds:
         require_robot(robot)
         if robot.batch_shape:
             raise InputError(f"a guard needs a single robot; {robot.name!r} is a batch of {robot.batch_shape} designs")
-        assumptions: tuple[str, ...] = ()
-        if "speed" not in changes:
-            changes["speed"] = joint_limits(robot).speed
-            unknown = sum(not speed for leg in servo_speeds(robot) for speed in leg)
-            if unknown:
-                assumptions = (f"joint speed {UNKNOWN_SPEED:g} rad/s for {unknown} joints: servo speed unknown",)
-        speed = per_joint("guard bound speed", changes["speed"], robot.legs)
-        defaults = {"limits": robot.limits, "acceleration": speed / STOPPING_TIME, "assumptions": assumptions}
-        bounds = cls(**{**defaults, **changes})
+        unknown = 0 if "speed" in changes else sum(not speed for leg in servo_speeds(robot) for speed in leg)
+        assumed = f"joint speed {UNKNOWN_SPEED:g} rad/s for {unknown} joints: servo speed unknown"
+        speed = per_joint("guard bound speed", changes.get("speed", joint_limits(robot).speed), robot.legs)
+        defaults = {"limits": robot.limits, "speed": speed, "acceleration": speed / STOPPING_TIME}
+        bounds = cls(**{**defaults, "assumptions": (assumed,) if unknown else (), **changes})
         if len(bounds.limits) != robot.legs:
             raise InputError(f"guard bound limits is for {len(bounds.limits)} legs; {robot.name!r} has {robot.legs}")
         return bounds

@@ -110,8 +110,7 @@ class FeetMonitor:
         found = []
         for leg, foot_x, foot_y, height in zip(legs, x, y, heights, strict=True):
             offset = abs(height - mean)
-            if offset > self._height:
-                bound = self._height + self._slope * math.hypot(foot_x - mean_x, foot_y - mean_y)
-                if offset > bound:
-                    found.append(Intervention(InterventionKind.FOOT_HEIGHT, self._codes[leg], "", offset, bound))
+            bound = self._height + self._slope * math.hypot(foot_x - mean_x, foot_y - mean_y)
+            if offset > bound:
+                found.append(Intervention(InterventionKind.FOOT_HEIGHT, self._codes[leg], "", offset, bound))
         return found

@@ -121,10 +121,7 @@ def plane_normal(points: list[Point]) -> Point:
     points : list of Point
         Points in B [m].
     """
-    count = len(points)
-    if count < 3:
-        return (0.0, 0.0, 1.0)
-    mx, my, mz = (sum(point[axis] for point in points) / count for axis in range(3))
+    mx, my, mz = (sum(point[axis] for point in points) / max(len(points), 1) for axis in range(3))
     xx = xy = yy = xz = yz = 0.0
     for x, y, z in points:
         dx, dy, dz = x - mx, y - my, z - mz

@@ -167,10 +167,8 @@ class Playing:
 
     def leads_to(self, goal: RobotState) -> bool:
         """Return whether the end of the sequence is on the way to a state that is wanted."""
-        if self.braking is not None:
-            # There is no way back into the middle of a motion.
-            return True
-        return self.end is goal or (self.end is RobotState.LYING and goal is RobotState.FOLDED)
+        # There is no way back into the middle of a motion.
+        return self.braking is not None or self.end is goal or (self.end, goal) == (RobotState.LYING, RobotState.FOLDED)
 
     @property
     def done(self) -> bool:
