@@ -8,33 +8,16 @@ from itertools import chain
 from operator import attrgetter
 from typing import Any, TypeAlias
 
-import numpy as np
-
 from tarsus.control.limitation import Limitation, LimitationKind
 from tarsus.control.readings import CHANNELS, SensorReadings, ValidReadings, Vector
-from tarsus.control.sensing.channel import AngularRateChannel, AttitudeChannel, Channel
-from tarsus.control.sensing.leg_channels import ContactChannel, JointAngleChannel, VectorChannel
+from tarsus.control.sensing.channels import channels_of
 from tarsus.control.sensing.plain_values import as_items, as_number, as_vector
-from tarsus.gait.ground_heights import GroundHeights
-from tarsus.kinematics.mass import known_weight
-from tarsus.robot.joint_limits import joint_limits
 from tarsus.robot.robot import Robot
 
 __all__ = ["ReadingsValidator", "rejections"]
 
 # Greatest age of a reading [s], or in ticks where these are long.
 _MOST_AGE, _MOST_TICKS = 0.1, 4.0
-# Greatest force on one foot, in weights of the robot, and greatest torque, in stall torques of the joint's servo.
-_MOST_WEIGHTS, _MOST_STALLS = 4.0, 1.5
-# Bounds where the robot's masses or servos are unknown, above those of any robot this is made for.
-_ANY_WEIGHT = 1e4  # [N]
-_ANY_STALL_TORQUE = 1e3  # [N m]
-# Greatest downward force on a foot, in weights: from a load cell's zero offset and the inertia of a swinging leg.
-# Beyond that the sign is wrong.
-_PULL = 0.25
-# Channels that are plausible wherever they are finite.
-_FINITE_CHANNELS = ("joint_speeds", "currents", "temperatures", "voltages")
-
 # Ages of the joints of each leg, where they are given one by one.
 _Ages: TypeAlias = tuple[Vector, ...] | None
 
@@ -58,20 +41,9 @@ class ReadingsValidator:
     """
 
     def __init__(self, robot: Robot) -> None:
-        legs, fastest = robot.leg_codes, float(joint_limits(robot).speed.max())
-        self._legs = legs
-        channels: dict[str, Any] = {
-            "contacts": ContactChannel(legs),
-            "attitude": AttitudeChannel(),
-            "joint_angles": JointAngleChannel(legs, np.asarray(robot.limits), fastest),
-            "forces": _forces_channel(robot),
-            "torques": _torques_channel(robot),
-            **{name: VectorChannel(name, legs) for name in _FINITE_CHANNELS},
-            "angular_rates": AngularRateChannel(["angular_rates"]),
-            "ground": _GroundChannel(["ground"]),
-        }
-        self._channels: list[Any] = [channels[name] for name in CHANNELS]
-        self._timed: list[Channel] = [channels["attitude"], channels["joint_angles"]]
+        channels, self._legs = channels_of(robot), robot.leg_codes
+        self._channels = [channels[name] for name in CHANNELS]
+        self._timed = channels["attitude"], channels["joint_angles"]
 
     def validate(self, readings: SensorReadings | None, dt: float) -> ValidReadings:
         """Return the readings that pass, and the reasons of all rejections.
@@ -140,16 +112,6 @@ def rejections(valid: ValidReadings) -> list[Limitation]:
     return [Limitation(kind=LimitationKind.READINGS, cause=reason) for reason in valid.rejected]
 
 
-class _GroundChannel(Channel):
-    """Heights of the ground, which have been checked as they were made: nothing has to settle."""
-
-    def read(self, value: Any, rejected: list[str]) -> GroundHeights | None:
-        if type(value) is GroundHeights:
-            return value
-        rejected.append("ground: not of class GroundHeights")
-        return None
-
-
 def _channel_ages(readings: SensorReadings, most: float, *, legs: int) -> tuple[str, dict[str, float], _Ages]:
     """Return what is wrong with all readings together, "" if nothing is; the ages of single channels; those of joints.
 
@@ -188,19 +150,3 @@ def _stale(name: str, age: float, most: float) -> str:
     if 0.0 <= age <= most:
         return ""
     return f"{name}: older than {1e3 * most:.3g} ms" if age > 0 else f"{name}: {_BAD_AGE}"
-
-
-def _forces_channel(robot: Robot) -> VectorChannel:
-    weight = known_weight(robot) or _ANY_WEIGHT
-    most = _MOST_WEIGHTS * weight
-    bounds = np.tile([[-most, most], [-most, most], [-_PULL * weight, most]], (robot.legs, 1, 1))
-    beyond = f"beyond {_MOST_WEIGHTS:g} times the robot's weight, or downward beyond {_PULL:g} times"
-    return VectorChannel("forces", robot.leg_codes, bounds=bounds, beyond=beyond, accept_z=True)
-
-
-def _torques_channel(robot: Robot) -> VectorChannel:
-    most = np.array(
-        [[_MOST_STALLS * (s.stall_torque if s else _ANY_STALL_TORQUE) for s in row] for row in robot.servos]
-    )
-    beyond = f"beyond {_MOST_STALLS:g} times the stall torque"
-    return VectorChannel("torques", robot.leg_codes, bounds=np.stack([-most, most], axis=-1), beyond=beyond)
