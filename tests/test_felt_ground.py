@@ -1141,7 +1141,8 @@ def test_a_foot_that_has_just_lifted_off_may_touch_the_ground_still_and_not_agai
     phases, touching = np.zeros(6), [True] * 6
 
     def as_planned(readings, standing, at):
-        return contacts.estimator.as_planned(readings, standing, at, lifted=contacts.lifted)
+        state = WalkController(STRIDER)._tick.gait._replace(down=np.array(standing), swing_phase=at)
+        return contacts.estimator.as_planned(readings, state, contacts.lifted)
 
     for _ in range(3):
         take_in(contacts, touching, [True] * 6, 0.04)

@@ -4,12 +4,8 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
 
-import numpy as np
-
-if TYPE_CHECKING:
-    from jaxtyping import Float
+from tarsus.control.walk.state import GaitState
 
 __all__ = ["ContactEstimator"]
 
@@ -87,32 +83,24 @@ class ContactEstimator:
         """Return whether a foot bears load, more probably than not, and its last reading says so."""
         return self.touching[leg] and self._last[leg][1]
 
-    def as_planned(
-        self,
-        readings: Sequence[bool | None] | None,
-        down: Sequence[bool],
-        phases: Float[np.ndarray, "legs"],
-        *,
-        lifted: Sequence[bool],
-    ) -> bool:
+    def as_planned(self, readings: Sequence[bool | None] | None, state: GaitState, lifted: Sequence[bool]) -> bool:
         """Return whether the feet touch the ground that should, and no others, and that is certain.
 
         Parameters
         ----------
         readings : sequence of (bool or None), or None
             Which feet touch the ground, as measured; None where nothing is.
-        down : sequence of bool
-            Which feet should stand.
-        phases : array, shape (legs,)
-            Swing phases of the others: those that have just lifted off may touch the ground still, or not any more.
+        state : GaitState
+            Which feet should stand; those that have just lifted off may touch the ground still, or not any more.
         lifted : sequence of bool
-            Which of them have been without contact since.
+            Which of the others have been without contact since they lifted off.
         """
         if readings is None:
             return False
+        down = state.down.tolist()
         if list(readings) == down == self.touching and all(self.certain):
             return True
-        feet = zip(readings, down, self.touching, self.certain, phases.tolist(), lifted, strict=True)
+        feet = zip(readings, down, self.touching, self.certain, state.swing_phase.tolist(), lifted, strict=True)
         return all(
             (certain and reading is on is touches)
             or not (on or phase > _RISING or reading is None or (reading and off))

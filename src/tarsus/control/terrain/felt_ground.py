@@ -120,7 +120,7 @@ class FeltGround:
         self.body.since, self._unread, self._ticks = self.body.since + dt, self._unread + dt, self._ticks + 1
         self.body.level(valid.attitude, state)
         kept = self._inputs is not None and not (stopped or self.body.looks)
-        if kept and self.contacts.estimator.as_planned(measured, down, state.swing_phase, lifted=self.contacts.lifted):
+        if kept and self.contacts.estimator.as_planned(measured, state, self.contacts.lifted):
             return state, []
         dt, ticks, self._unread, self._ticks, self._inputs = self._unread, self._ticks, 0.0, 0, None
         self.body.see(valid.attitude, state, dt)
