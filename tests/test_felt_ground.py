@@ -11,7 +11,7 @@ import tarsus
 from sample_contacts import FEET, STANDING, find_open, take_in
 from tarsus.control.limiter.protocol import TwistGrant, TwistRequest
 from tarsus.control.pose.admittance import Admittance
-from tarsus.control.pose.posture_feedback import BodyMove, PostureFeedback
+from tarsus.control.pose.posture_feedback import BodyMove, PostureFeedback, PostureRates
 from tarsus.control.readings import SensorReadings, ValidReadings
 from tarsus.control.sensing.contact_estimator import ContactEstimator
 from tarsus.control.sensing.foot_loads import FootLoads
@@ -200,7 +200,7 @@ def test_legs_reach_higher_beside_their_strokes_away_from_the_body():
 @pytest.mark.parametrize(("swing_height", "share"), [(0.02, 0.0), (0.075, 0.5), (0.2, 1.0)])
 def test_a_foot_swings_out_as_far_as_its_leg_needs_for_its_top(swing_height, share):
     under = GroundUnder(0.0, lowest=-0.2, highest=0.05, bow=0.03j, bowed=0.1)
-    felt = FeltInputs([], [], [], 0.0, 0.0, (0.0, 0.0), 0j, 0.0, 0j, 0.8, 1.0, swing_height, 10.0, 0.0, {})
+    felt = FeltInputs([], [], [], 0.0, PostureRates(), 0j, 0.0, 0j, 0.8, 1.0, swing_height, 10.0, 0.0, {})
     _, foot = _swinging(0.0, FeltFoot(), under, felt, 0.01, (0.0, 0.5, 0.0, 0j))
     assert foot.top == pytest.approx(min(swing_height, 0.1))
     assert foot.bow == pytest.approx(0.03j * share)
@@ -682,7 +682,7 @@ def test_a_foot_that_lifts_off_soon_is_not_lowered_where_others_take_its_load():
 
 
 def test_a_foot_that_steps_down_a_slope_rises_over_the_middle_of_its_way():
-    felt = FeltInputs([], [], [], 0.0, 0.0, (0.0, 0.0), 0j, 0.0, 0j, 0.8, 1.0, 0.03, 1.0, 0.0, {})
+    felt = FeltInputs([], [], [], 0.0, PostureRates(), 0j, 0.0, 0j, 0.8, 1.0, 0.03, 1.0, 0.0, {})
     for lifted, expected, top in ((0.0, 0.0, 0.03), (0.04, 0.0, 0.05), (0.0, 0.04, 0.07)):
         under = GroundUnder(expected, lowest=-0.2, highest=0.2)
         _, foot = _swinging(lifted, FeltFoot(), under, felt, 0.01, (0.0, 0.5, lifted, 0j))
@@ -690,7 +690,7 @@ def test_a_foot_that_steps_down_a_slope_rises_over_the_middle_of_its_way():
 
 
 def test_a_foot_clears_the_ground_that_it_leaves_where_lower_one_is_too_far_to_be_reached_in_its_swing():
-    felt = FeltInputs([], [], [], 0.0, 0.0, (0.0, 0.0), 0j, 0.0, 0j, 0.8, 1.0, 0.03, 0.2, 0.0, {})
+    felt = FeltInputs([], [], [], 0.0, PostureRates(), 0j, 0.0, 0j, 0.8, 1.0, 0.03, 0.2, 0.0, {})
     for expected, top in ((-0.02, 0.015), (-0.04, 0.01)):
         under = GroundUnder(expected, lowest=-0.2, highest=0.2)
         _, foot = _swinging(0.0, FeltFoot(), under, felt, 0.01, (0.0, 0.3, 0.0, 0j))
@@ -700,7 +700,7 @@ def test_a_foot_clears_the_ground_that_it_leaves_where_lower_one_is_too_far_to_b
 @pytest.mark.parametrize("swing_height", [0.004, 0.012, 0.03, 0.05])
 @pytest.mark.parametrize("swing_time", [0.3, 0.6, 1.2])
 def test_a_foot_comes_down_once_it_has_travelled_and_by_the_end_of_its_swing(swing_height, swing_time):
-    felt = FeltInputs([], [], [], 0.0, 0.0, (0.0, 0.0), 0j, 0.0, 0j, 0.75, 1.0, swing_height, 0.4, 0.0, {})
+    felt = FeltInputs([], [], [], 0.0, PostureRates(), 0j, 0.0, 0j, 0.75, 1.0, swing_height, 0.4, 0.0, {})
     under, height, foot, phase, dt = GroundUnder(0.0, lowest=-0.2, highest=0.2), 0.0, FeltFoot(), 0.0, 0.002
     while height > 0.0 or phase < 0.4:
         height, foot = _swinging(height, foot, under, felt, dt, (phase, swing_time, 0.0, 0j))
@@ -723,7 +723,7 @@ def test_in_physics_feet_that_are_lifted_little_do_not_slide():
 
 @pytest.mark.parametrize("raised_at", [0.0, 0.2, 0.3, 0.4, 0.415])
 def test_a_foot_is_not_thrown_up_by_a_swing_that_becomes_higher(raised_at):
-    felt = FeltInputs([], [], [], 0.0, 0.0, (0.0, 0.0), 0j, 0.0, 0j, 0.8, 1.0, 0.03, 1.0, 0.0, {})
+    felt = FeltInputs([], [], [], 0.0, PostureRates(), 0j, 0.0, 0j, 0.8, 1.0, 0.03, 1.0, 0.0, {})
     under, height, foot, heights = GroundUnder(0.0, lowest=0.0, highest=0.2), 0.0, FeltFoot(), []
     for tick in range(50):
         phase = tick / 50
@@ -747,7 +747,7 @@ def test_feet_step_as_high_when_the_robot_stops_as_while_it_walks(ticks):
 
 
 def test_a_foot_that_has_stood_looks_for_the_ground_slowly_while_three_others_stand():
-    felt = FeltInputs([], [], [], 0.0, 0.0, (0.0, 0.0), 0j, 0.0, 0j, 0.8, 1.0, 0.03, 0.4, 0.0, {})
+    felt = FeltInputs([], [], [], 0.0, PostureRates(), 0j, 0.0, 0j, 0.8, 1.0, 0.03, 0.4, 0.0, {})
     under = GroundUnder(0.0, lowest=-0.2, highest=0.2)
     # So not on rough ground, where it may be far below, and not close to where it is expected; where more than three
     # feet always stand, always but where the walk waits for it.
@@ -771,7 +771,7 @@ def test_a_foot_that_has_stood_looks_for_the_ground_slowly_while_three_others_st
 
 
 def test_a_foot_that_has_stepped_back_goes_down_at_its_place_while_the_body_backs_off():
-    felt = FeltInputs([], [], [], 0.0, 0.0, (0.0, 0.0), 0j, 0.0, -0.15 + 0j, 0.8, 1.0, 0.03, 0.4, 0.0, {})
+    felt = FeltInputs([], [], [], 0.0, PostureRates(), 0j, 0.0, -0.15 + 0j, 0.8, 1.0, 0.03, 0.4, 0.0, {})
     for way, goes_down in ((-0.0015, True), (-0.02, False)):
         under = GroundUnder(0.0, lowest=-0.2, highest=0.2, place=way + 0j)
         height, place, _ = _searching(0.01, FeltFoot(), 0j, 0.0, under, felt, 0.01)
@@ -780,7 +780,7 @@ def test_a_foot_that_has_stepped_back_goes_down_at_its_place_while_the_body_back
 
 
 def test_a_foot_that_has_met_an_obstacle_goes_down_once_it_is_past_it():
-    felt = FeltInputs([], [], [], 0.0, 0.0, (0.0, 0.0), 0j, 0.0, 0j, 0.8, 1.0, 0.03, 1.0, 0.0, {})
+    felt = FeltInputs([], [], [], 0.0, PostureRates(), 0j, 0.0, 0j, 0.8, 1.0, 0.03, 1.0, 0.0, {})
     risen = FeltFoot(top=0.05, top_phase=0.4, drawn_back=0j)
     for place, clears, goes_down in (
         (0j, True, False),
@@ -794,7 +794,7 @@ def test_a_foot_that_has_met_an_obstacle_goes_down_once_it_is_past_it():
 
 
 def test_feet_go_down_sooner_where_contacts_are_known_late():
-    felt = FeltInputs([], [], [], 0.0, 0.0, (0.0, 0.0), 0j, 0.0, 0j, 0.8, 1.0, 0.03, 1.0, 0.0, {})
+    felt = FeltInputs([], [], [], 0.0, PostureRates(), 0j, 0.0, 0j, 0.8, 1.0, 0.03, 1.0, 0.0, {})
     under, high = GroundUnder(0.0, lowest=-0.2, highest=0.2), FeltFoot(top=0.06, top_phase=0.42, speed=-0.3)
     speeds = [
         _swinging(0.06, high, under, felt._replace(late=late), 0.1, (0.5, 0.5, 0.0, 0j))[1].speed
@@ -814,7 +814,7 @@ def test_feet_go_down_sooner_where_contacts_are_known_late():
     ],
 )
 def test_near_the_ground_feet_go_down_more_slowly_the_later_contacts_are_known(late, depth, over, fastest):
-    felt = FeltInputs([], [], [True] * 2, depth, 0.0, (0.0, 0.0), 0j, 0.0, 0j, 0.8, 1.0, 0.03, 0.4, late, {})
+    felt = FeltInputs([], [], [True] * 2, depth, PostureRates(), 0j, 0.0, 0j, 0.8, 1.0, 0.03, 0.4, late, {})
     under, high = GroundUnder(0.0, lowest=-0.2, highest=0.2), FeltFoot(top=0.2, top_phase=0.42)
     _, swings = _swinging(over, high, under, felt, 0.1, (0.9, 0.5, 0.0, 0j))
     assert swings.speed == pytest.approx(-fastest)
@@ -826,7 +826,7 @@ def test_near_the_ground_feet_go_down_more_slowly_the_later_contacts_are_known(l
     ("slow", "over", "speed"), [(0.0, 0.006, 0.24), (1.0, 0.006, 0.09), (0.5, 0.006, 0.16), (1.0, 0.008, 0.23)]
 )
 def test_feet_that_slow_down_do_so_just_over_the_expected_ground(slow, over, speed):
-    felt = FeltInputs([], [], [True] * 2, 0.0, 0.0, (0.0, 0.0), 0j, 0.0, 0j, 0.8, 1.0, 0.03, 1.0, 0.0, {})
+    felt = FeltInputs([], [], [True] * 2, 0.0, PostureRates(), 0j, 0.0, 0j, 0.8, 1.0, 0.03, 1.0, 0.0, {})
     under, foot = GroundUnder(0.0, lowest=-0.2, highest=0.2), FeltFoot(top=0.06, top_phase=0.42)
     _, swings = _swinging(over, foot, under, felt._replace(slow_contact=slow), 0.1, (0.9, 0.5, 0.0, 0j))
     # A little sooner at its top, the foot has 0.52 of the swing for the way down instead of 0.5.

@@ -12,6 +12,7 @@ from gait_robots import HEXAPOD_GAITS, PRESETS
 from sample_gait_states import EARTH, FACING, begun, moment_of, rest_of, step_inputs_of
 from sample_stances import setup_of
 from tarsus.control.filters import CriticallyDamped
+from tarsus.control.pose.posture_feedback import PostureRates
 from tarsus.control.walk.felt_feet import FeltFoot, FeltInputs, GroundUnder
 from tarsus.control.walk.foothold import final_footholds
 from tarsus.control.walk.state import POSITION_TOLERANCE, integrate_twist
@@ -255,7 +256,7 @@ def test_a_foot_that_was_put_down_in_the_air_and_has_not_stood_rises_as_it_lifts
     now = now._replace(felt=[FeltFoot(speed=-0.1, top=0.05)] * len(rest), ground_height=np.full(len(rest), 0.02))
     under = [GroundUnder(0.0, lowest=-0.05, highest=0.1)] * len(rest)
     stands, steps = [False] * len(rest), [True] * len(rest)
-    felt = FeltInputs(under, stands, steps, 0.0, 0.0, (0.0, 0.0), 0j, 0.0, 0j, 0.8, 1.0, 0.03, 0.4, 0.0, {})
+    felt = FeltInputs(under, stands, steps, 0.0, PostureRates(), 0j, 0.0, 0j, 0.8, 1.0, 0.03, 0.4, 0.0, {})
     inputs = step_inputs_of(setup, rest, (0.05, 0.0, 0.0), felt=felt)
     for _ in range(18):
         now = moved_vertically(advance(now, inputs, 0.01), inputs, 0.01)

@@ -55,7 +55,7 @@ class BodyMove(NamedTuple):
 
 
 class PostureRates(NamedTuple):
-    """How the body is to move over its standing feet.
+    """How the body is to move over its standing feet; by default it does not.
 
     Attributes
     ----------
@@ -65,8 +65,8 @@ class PostureRates(NamedTuple):
         Angular velocity of the feet about the body, along x and y of the heading frame [rad/s].
     """
 
-    climb: float
-    turn: tuple[float, float]
+    climb: float = 0.0
+    turn: tuple[float, float] = (0.0, 0.0)
 
 
 class PostureFeedback:
@@ -175,7 +175,7 @@ class PostureFeedback:
             climb = min(climb, fastest_sink - share * sink)
         climb, most = max(climb, -2 * fastest), _MOVES if self._rests else _RESTS
         self._rests = stands and abs(climb) < most[0] and math.hypot(roll, pitch) < quick * most[1]
-        return PostureRates(0.0, (0.0, 0.0)) if self._rests else PostureRates(climb, (roll, pitch))
+        return PostureRates() if self._rests else PostureRates(climb, (roll, pitch))
 
 
 def _heights(rises: _Ranges, reach: _Ranges, least: float) -> tuple[float, float]:

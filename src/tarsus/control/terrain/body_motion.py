@@ -86,7 +86,7 @@ class BodyMotion:
         self._posture, self.roughness = PostureFeedback(levelling, scale=scale), Roughness(adaptation, scale=scale)
         self.slope, self.stance = SlopeLimit(adaptation.friction), SlopeStance(robot, scale=scale)
         self.stopped = StoppedBody(robot)
-        self.rates, self.drift, self.lowered = PostureRates(0.0, (0.0, 0.0)), 0j, 0.0
+        self.rates, self.drift, self.lowered = PostureRates(), 0j, 0.0
         self.tilt: RollPitch | None = None
         self.heading, self._sinking = HeadingFeedback(), Sinking(scale)
         # What the body did when it was looked at, until it is turned by a newer attitude.
@@ -167,7 +167,7 @@ class BodyMotion:
         velocity = complex(*state.twist.value[:2].tolist()) * pace
         commanded, turning = self._commanded(state, velocity, dt)
         if not bears:
-            self.rates, self.drift, self._move = PostureRates(0.0, (0.0, 0.0)), 0j, None
+            self.rates, self.drift, self._move = PostureRates(), 0j, None
             self.heading.forget()
             self.odometry.forget()
             return

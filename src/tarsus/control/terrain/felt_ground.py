@@ -159,9 +159,8 @@ class FeltGround:
         self._given = excluded, standing
         self._rests = self._still and not (self.missing.refuses or self.missing.places)
         if kept and self._given == before and (standing or not self._next_lift.is_due(timing, state, dt)):
-            climb, turn = self.body.rates
-            if turn is not kept.turn or climb != kept.climb:
-                self._inputs = kept = kept._replace(climb=climb, turn=turn)
+            if self.body.rates is not kept.rates:
+                self._inputs = kept = kept._replace(rates=self.body.rates)
             return kept
         due = None if standing else timing.due(state, dt)
         dt, self._idle = self._idle, 0.0
@@ -202,8 +201,7 @@ class FeltGround:
         return FeltInputs(
             *feet,
             depth=depth,
-            climb=body.rates.climb,
-            turn=body.rates.turn,
+            rates=body.rates,
             drift=body.drift + self.missing.held(passing),
             yaw_rate=body.heading.rate,
             back=self.missing.back,
@@ -214,7 +212,6 @@ class FeltGround:
             scale=scale,
             late=self.contacts.age,
             beside=self.ground.beside,
-            exact=bool(self.ground.crossing),
             in_air=self.condition.in_air,
             rough=min(depth / (scale * _ROUGH), 1.0),
             slow_contact=body.stance.lasting,

@@ -6,6 +6,8 @@ import math
 from collections.abc import Mapping
 from typing import NamedTuple
 
+from tarsus.control.pose.posture_feedback import PostureRates
+
 __all__ = ["ROUNDING", "FeltFoot", "FeltInputs", "GroundUnder", "travel_share"]
 
 ROUNDING = 1e-9
@@ -86,10 +88,8 @@ class FeltInputs(NamedTuple):
         Whether each leg is in the gait.
     depth : float
         How far below the expected ground a foot should be by the end of its swing [m].
-    climb : float
-        Upward speed of the body over the standing feet [m/s].
-    turn : tuple of float
-        Angular velocity of the standing feet about the body, along x and y of the heading frame [rad/s].
+    rates : PostureRates
+        How the body is to move over the standing feet.
     drift : complex
         Velocity of the standing feet against the body's, in the heading frame, that makes up for lost way [m/s].
     yaw_rate : float
@@ -112,8 +112,6 @@ class FeltInputs(NamedTuple):
         Whether the robot is in the air: all feet go to one height, to be put down together.
     scale : float
         By how much speeds are smaller than given, on short legs, 0 to 1.
-    exact : bool
-        Whether feet are to keep to their paths, as one of them crosses a hole.
     redundant : bool
         Whether more than three feet stand at any time of the gait.
     rough, slow_contact : float, float
@@ -124,8 +122,7 @@ class FeltInputs(NamedTuple):
     stands: list[bool]
     steps: list[bool]
     depth: float
-    climb: float
-    turn: tuple[float, float]
+    rates: PostureRates
     drift: complex
     yaw_rate: float
     back: complex
@@ -137,7 +134,6 @@ class FeltInputs(NamedTuple):
     beside: Mapping[int, complex]
     in_air: bool = False
     scale: float = 1.0
-    exact: bool = False
     redundant: bool = False
     rough: float = 0.0
     slow_contact: float = 0.0

@@ -70,10 +70,10 @@ def moved_vertically(state: GaitState, inputs: StepInputs, dt: float) -> GaitSta
     felt = inputs.felt
     if felt is None:
         return state
-    climb = _towards(state.climb, felt.climb, _BODY_ACCELERATION * dt)
+    climb = _towards(state.climb, felt.rates.climb, _BODY_ACCELERATION * dt)
     body, heading = state.elevation + float(state.posture.value[2]), cmath.exp(1j * state.yaw)
     # In G.
-    turning, drift = complex(felt.turn[1], -felt.turn[0]) * heading, felt.drift * heading
+    turning, drift = complex(felt.rates.turn[1], -felt.rates.turn[0]) * heading, felt.drift * heading
     yaw_rate = 1j * felt.yaw_rate
     swing, origin, across = 1 - inputs.gait.duty_factor, state.origin, turning.conjugate()
     places, heights, feet, stop = state.foot.tolist(), state.ground_height.tolist(), list(state.felt), _STOPPING * dt
