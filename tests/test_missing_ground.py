@@ -356,7 +356,7 @@ def test_a_foot_that_is_commanded_deep_and_held_up_by_its_leg_is_over_no_hole():
 
 def test_feet_over_their_commands_are_known_where_angles_are_measured():
     robot = tarsus.load_robot("strider")
-    odometry, g, commanded = LegOdometry(robot), robot.geometry, np.zeros((6, 3))
+    odometry, g, commanded = LegOdometry(robot), robot.geometry, [(0.0, 0.0, 0.0)] * 6
     # The legs are straight out; measured, they are turned up at their femur joints.
     higher = ValidReadings(joint_angles=((0.0, 0.1, 0.0),) * 6)
     length = g.femur[0] + g.tibia[0]

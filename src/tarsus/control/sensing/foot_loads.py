@@ -69,7 +69,7 @@ class FootLoads:
         return _ESTIMATED_DESCENT if self.estimated else _DESCENT
 
     def contacts(
-        self, valid: ValidReadings, angles: Float[np.ndarray, "legs 3"], state: GaitState, dt: float
+        self, valid: ValidReadings, commanded: Sequence[Vector], state: GaitState, dt: float
     ) -> Sequence[bool | None] | None:
         """Return which feet touch the ground: from switches, else load cells, else joint angles; None where unknown.
 
@@ -79,7 +79,7 @@ class FootLoads:
         ----------
         valid : ValidReadings
             The readings.
-        angles : array, shape (legs, 3)
+        commanded : sequence of (coxa, femur, tibia)
             Joint angles that were commanded in the last tick [rad].
         state, dt : GaitState, float
             The gait state; time since the last tick [s].
@@ -87,7 +87,7 @@ class FootLoads:
         self.estimated, found = False, self._felt(valid)
         self._untold = self._untold + dt if found is None else 0.0
         if self._untold > _UNTOLD and valid.joint_angles is not None and self._joints is not None:
-            found = self._joints.contacts(valid, angles, state, dt)
+            found = self._joints.contacts(valid, commanded, state, dt)
             self.estimated = found is not None
         return found
 
@@ -99,7 +99,7 @@ class FootLoads:
         return [None if force is None else force[2] - zero > least for force, zero in cells]
 
     def offsets(
-        self, valid: ValidReadings, angles: Float[np.ndarray, "legs 3"], state: GaitState, dt: float, *, out: list[int]
+        self, valid: ValidReadings, commanded: Sequence[Vector], state: GaitState, dt: float, *, out: Sequence[int]
     ) -> Float[np.ndarray, "legs"] | None:
         """Return the upward offsets of compliant feet by measured forces, or by joint torques [m]; None of stiff ones.
 
@@ -109,9 +109,9 @@ class FootLoads:
         ----------
         valid : ValidReadings
             The readings.
-        angles : array, shape (legs, 3)
-            Joint angles [rad].
-        state, dt, out : GaitState, float, list of int
+        commanded : sequence of (coxa, femur, tibia)
+            Joint angles that were commanded in the last tick [rad].
+        state, dt, out : GaitState, float, sequence of int
             The gait state; length of the tick [s]; legs that are taken out of the gait: they bear no load.
         """
         if valid.forces is not None:
@@ -120,7 +120,7 @@ class FootLoads:
             return None
         forces: Sequence[Vector | None] | None = valid.forces
         if forces is None and valid.torques is not None and self._torques is not None:
-            forces = self._torques.forces(angles.tolist(), valid.torques)
+            forces = self._torques.forces(commanded, valid.torques)
         if forces is None or not self._weight:
             return self._filter.step((None,) * len(state.foot), dt)
         places = [[foot.real, foot.imag, 0.0] for foot in (state.foot - state.foot.mean()).tolist()]

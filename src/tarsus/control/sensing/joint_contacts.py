@@ -4,18 +4,15 @@ from __future__ import annotations
 
 import math
 from collections import deque
-from typing import TYPE_CHECKING
+from collections.abc import Sequence
 
 import numpy as np
 
-from tarsus.control.readings import ValidReadings
+from tarsus.control.readings import ValidReadings, Vector
 from tarsus.control.walk.state import GaitState
 from tarsus.kinematics.mass import STANDARD_GRAVITY, known_weight
 from tarsus.load.compliant.joint_springs import JointSprings
 from tarsus.robot.robot import Robot
-
-if TYPE_CHECKING:
-    from jaxtyping import Float
 
 __all__ = ["JointContacts"]
 
@@ -82,7 +79,7 @@ class JointContacts:
         # Moments of the links' weights on a level femur and shank.
         near, far = STANDARD_GRAVITY * (mass[0] * com[0] + mass[1] * lengths), STANDARD_GRAVITY * mass[1] * com[1]
         self._moments = near.tolist(), far.tolist()
-        stiffness: Float[np.ndarray, "legs"] = springs.stiffness[:, 1]
+        stiffness = springs.stiffness[:, 1]
         self._rates, self._stiffness = (stiffness / inertia, springs.damping[:, 1] / inertia), stiffness.tolist()
         self._columns = springs.stall_torque[:, 1] / stiffness, springs.dead_band[:, 1], stiffness
         # Of each femur: what a step needs; angle, speed and target; expected angles and torques after each step.
@@ -96,7 +93,7 @@ class JointContacts:
         self._borne = [2 * _LONG] * robot.legs
 
     def contacts(
-        self, valid: ValidReadings, angles: Float[np.ndarray, "legs 3"], state: GaitState, dt: float
+        self, valid: ValidReadings, commanded: Sequence[Vector], state: GaitState, dt: float
     ) -> list[bool] | None:
         """Return which feet touch the ground; None where nothing is known.
 
@@ -104,12 +101,12 @@ class JointContacts:
         ----------
         valid : ValidReadings
             The readings, with joint angles.
-        angles : array, shape (legs, 3)
+        commanded : sequence of (coxa, femur, tibia)
             Joint angles that were commanded in the last tick [rad].
         state, dt : GaitState, float
             The gait state; time since the last tick [s].
         """
-        self._follow(angles[:, 1].tolist(), dt)
+        self._follow([femur for _, femur, _ in commanded], dt)
         legs = [leg for leg in valid.joint_angles or () if leg is not None]
         late = (self.lag + valid.joint_age) / self._step
         recent = max(int(late), 0) + 1

@@ -4,18 +4,13 @@ from __future__ import annotations
 
 import cmath
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, NamedTuple
-
-import numpy as np
+from typing import NamedTuple
 
 from tarsus.control.limitation import Limitation, LimitationKind
-from tarsus.control.readings import ValidReadings
+from tarsus.control.readings import ValidReadings, Vector
 from tarsus.gait.stance.stance_geometry import rotation_rows
 from tarsus.kinematics.scalar_solver import ScalarSolver
 from tarsus.robot.robot import Robot
-
-if TYPE_CHECKING:
-    from jaxtyping import Float
 
 __all__ = ["CommandedMotion", "LegOdometry"]
 
@@ -68,11 +63,9 @@ class LegOdometry:
     """
 
     def __init__(self, robot: Robot) -> None:
-        self.behind, self.slip, self._slides = 0j, [0.0] * robot.legs, [0j] * robot.legs
         self._names, self._solver = robot.leg_names, ScalarSolver(robot)
         self._mounts = list(zip(robot.mount_yaw.tolist(), robot.foot_radius.tolist(), strict=True))
-        # Where the feet were that stood, and the inclination of their tibiae.
-        self._before = dict[int, tuple[complex, float]]()
+        self.forget()
 
     @property
     def limitations(self) -> list[Limitation]:
@@ -83,8 +76,9 @@ class LegOdometry:
 
     def forget(self) -> None:
         """Forget what is missing, where the feet were, and that they slip: the robot is carried."""
-        self.behind, self._before, self._slides = 0j, {}, [0j] * len(self.slip)
-        self.slip = [0.0] * len(self.slip)
+        self.behind, self.slip, self._slides = 0j, [0.0] * len(self._mounts), [0j] * len(self._mounts)
+        # Where the feet were that stood, and the inclination of their tibiae.
+        self._before = dict[int, tuple[complex, float]]()
 
     def step(self, valid: ValidReadings, bears: Sequence[int], commanded: CommandedMotion, dt: float) -> complex:
         """Return the velocity that makes up for what is missing, in the heading frame [m/s].
@@ -129,41 +123,41 @@ class LegOdometry:
         return wanted * min(1.0, most / max(abs(wanted), 1e-12))
 
     def feet_off_commanded(
-        self, legs: list[int], valid: ValidReadings, angles: Float[np.ndarray, "legs 3"]
-    ) -> dict[int, tuple[float, float, float]]:
+        self, legs: Sequence[int], valid: ValidReadings, commanded: Sequence[Vector]
+    ) -> dict[int, Vector]:
         """Return how far feet are from where they are commanded, of those of some legs whose angles are measured.
 
         Parameters
         ----------
-        legs, valid : list of int, ValidReadings
+        legs, valid : sequence of int, ValidReadings
             The legs; the readings.
-        angles : array, shape (legs, 3)
-            Commanded joint angles [rad].
+        commanded : sequence of (coxa, femur, tibia)
+            Commanded joint angles of each leg [rad].
 
         Returns
         -------
-        dict of int to (float, float, float)
+        dict of int to (x, y, z)
             By leg, in the body's frame [m].
         """
-        measured, wanted = valid.joint_angles, angles.tolist()
+        measured = valid.joint_angles
         if not (legs and measured):
             return {}
-        found = self._solver.feet([each or asked for each, asked in zip(measured, wanted, strict=True)])
-        feet = zip(found, self._solver.feet(wanted), strict=True)
+        found = self._solver.feet([each or asked for each, asked in zip(measured, commanded, strict=True)])
+        feet = zip(found, self._solver.feet(commanded), strict=True)
         off = [(x - wanted_x, y - wanted_y, z - wanted_z) for (x, y, z), (wanted_x, wanted_y, wanted_z) in feet]
         return {leg: off[leg] for leg in legs if measured[leg] is not None}
 
-    def tracking_error(
-        self, valid: ValidReadings, angles: Float[np.ndarray, "legs 3"], yaw: float, leg: int
-    ) -> complex:
+    def tracking_error(self, valid: ValidReadings, commanded: Sequence[Vector], yaw: float, leg: int) -> complex:
         """Return how far a foot is from where it is commanded, horizontally in G; 0 where that is not measured [m].
 
         Parameters
         ----------
-        valid, angles, yaw, leg : ValidReadings, array of shape (legs, 3), float, int
-            The readings; commanded joint angles [rad]; yaw of the body [rad]; the leg.
+        valid, commanded : ValidReadings, sequence of (coxa, femur, tibia)
+            The readings; commanded joint angles of each leg [rad].
+        yaw, leg : float, int
+            Yaw of the body [rad]; the leg.
         """
-        off = self.feet_off_commanded([leg], valid, angles)
+        off = self.feet_off_commanded([leg], valid, commanded)
         return complex(*off[leg][:2]) * cmath.exp(1j * yaw) if off else 0j
 
     def _note_slip(self, feet: list[complex], moved: dict[int, complex], dt: float) -> None:

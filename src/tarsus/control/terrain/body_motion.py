@@ -4,16 +4,14 @@ from __future__ import annotations
 
 import cmath
 import math
-from typing import TYPE_CHECKING
-
-import numpy as np
+from collections.abc import Sequence
 
 from tarsus.control.limitation import Limitation, LimitationKind
 from tarsus.control.limiter.stopped_body import StoppedBody
 from tarsus.control.pose.heading_feedback import HeadingFeedback
 from tarsus.control.pose.posture_feedback import BodyMove, Levelling, PostureFeedback, PostureRates
 from tarsus.control.pose.slope_stance import SlopeStance
-from tarsus.control.readings import RollPitch, ValidReadings
+from tarsus.control.readings import RollPitch, ValidReadings, Vector
 from tarsus.control.sensing.leg_odometry import CommandedMotion, LegOdometry
 from tarsus.control.terrain.foot_contacts import FootContacts
 from tarsus.control.terrain.ground_map import GroundMap
@@ -27,9 +25,6 @@ from tarsus.control.walk_state import TickState
 from tarsus.gait.stance.reachable_heights import reachable_share
 from tarsus.gait.stance.stance_geometry import SWING_HEIGHT
 from tarsus.robot.robot import Robot
-
-if TYPE_CHECKING:
-    from jaxtyping import Float
 
 __all__ = ["BodyMotion"]
 
@@ -189,7 +184,7 @@ class BodyMotion:
         self.rates = self._posture.rates(self.ground.plane, self.tilt, self._move)
 
     def sinks_at(
-        self, state: GaitState, footing: Footing, valid: ValidReadings, angles: Float[np.ndarray, "legs 3"], dt: float
+        self, state: GaitState, footing: Footing, valid: ValidReadings, commanded: Sequence[Vector], dt: float
     ) -> int | None:
         """Return the leg of a foot that bears load and sinks, where the heights of all such feet are measured.
 
@@ -197,16 +192,16 @@ class BodyMotion:
         ----------
         state, footing, valid : GaitState, Footing, ValidReadings
             The gait state; the feet; the readings.
-        angles, dt : array of shape (legs, 3), float
-            Joint angles that are commanded [rad]; time since the last call [s].
+        commanded, dt : sequence of (coxa, femur, tibia), float
+            Joint angles of each leg that are commanded [rad]; time since the last call [s].
         """
         heights = dict[int, float]()
         bears = [leg for leg, on in enumerate(footing.down) if on and self.contacts.touches(leg)]
-        off = self.odometry.feet_off_commanded(bears if len(bears) <= _FEW else [], valid, angles)
+        off = self.odometry.feet_off_commanded(bears if len(bears) <= _FEW else [], valid, commanded)
         if valid.attitude is not None and len(off) == len(bears) and valid.predicted.isdisjoint(bears):
-            tilt, commanded = off_commanded(valid.attitude, state), state.ground_height.tolist()
+            tilt, over = off_commanded(valid.attitude, state), state.ground_height.tolist()
             for leg, (x, y, z) in off.items():
-                heights[leg] = commanded[leg] + z - sunk_at(footing.places[leg] + complex(x, y), tilt)
+                heights[leg] = over[leg] + z - sunk_at(footing.places[leg] + complex(x, y), tilt)
         return self._sinking.step(heights, footing, dt, deeper=self.roughness.deeper)
 
     def _commanded(self, state: GaitState, velocity: complex, dt: float) -> tuple[CommandedMotion, float]:

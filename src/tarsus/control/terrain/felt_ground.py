@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from tarsus.control.limitation import Limitation, LimitationKind
-from tarsus.control.readings import SensorReadings, ValidReadings
+from tarsus.control.readings import SensorReadings, ValidReadings, Vector
 from tarsus.control.sensing.body_condition import BodyCondition
 from tarsus.control.sensing.continued_readings import ContinuedReadings
 from tarsus.control.sensing.foot_loads import FootLoads
@@ -79,7 +79,7 @@ class FeltGround:
         self.measured, self.support, self.condition = ValidReadings(), Support(), BodyCondition()
         self.offsets: Float[np.ndarray, "legs"] | None = None
         self.readings, self._loads, self._tipping = ContinuedReadings(robot), loads, Tipping(body.reach.scale)
-        self._commanded, self._still, self._swings = angles, True, SwingMonitor()
+        self._commanded, self._still, self._swings = list[Vector](), True, SwingMonitor()
         self._centre = complex(*centre_of_mass(robot, angles)[:2].tolist())
         # What feet are given while all is as planned; ticks and times since contacts and support were looked at.
         self._inputs: FeltInputs | None = None
@@ -107,11 +107,13 @@ class FeltGround:
             Joint angles [rad].
         """
         valid = self.measured = self.readings.step(readings, angles, dt, lag=self._swings.lag)
-        down, self._commanded = state.down.tolist(), angles
+        down, self._commanded = state.down.tolist(), angles.tolist()
         # Without torques, a servo that pushes on as its foot is to get past an obstacle looks like one that has failed.
         lands = [on and not self.missing.obstacles.tries(leg) for leg, on in enumerate(down)]
-        stopped = self._swings.step(angles[:, 0].tolist(), valid, dt, down if valid.torques else lands)
-        measured = self._loads.contacts(valid, angles, state, dt)
+        stopped = self._swings.step(
+            [coxa for coxa, _, _ in self._commanded], valid, dt, down if valid.torques else lands
+        )
+        measured = self._loads.contacts(valid, self._commanded, state, dt)
         if not state.felt:
             if measured is None and valid.attitude is None:
                 return state, []
@@ -132,11 +134,12 @@ class FeltGround:
         rests = self._rests and self.support.held
         self.contacts.step(measured, down, dt, count=ticks, lands=lands, leaving=leaving, rests=rests, carried=carried)
         self.condition.step([*map(self.contacts.touches, range(len(down)))], valid.attitude, dt, held=self.support.held)
-        self.offsets = self._loads.offsets(valid, angles, state, dt, out=self._given[0])
+        self.offsets = self._loads.offsets(valid, self._commanded, state, dt, out=self._given[0])
         if self.missing.stranded and all(down):
             state = timing.with_first_lift(state, self.missing.stranded[0])
         pace = self.support.pace
-        off = partial(self.body.odometry.tracking_error, valid, angles, state.yaw + float(state.moved_posture[5]))
+        yaw = state.yaw + float(state.moved_posture[5])
+        off = partial(self.body.odometry.tracking_error, valid, self._commanded, yaw)
         state, landed = met_ground(state, self.body, self.missing, stopped=stopped, error=off, timing=timing, pace=pace)
         if self.missing.tips or self.condition.carried or (self.missing.refuses and self.support.halts):
             state, swung = put_down(state, timing=timing, pace=pace)
