@@ -170,11 +170,9 @@ class Tipping:
         self._before = roll, pitch = roll + share * (tilt[0] - roll), pitch + share * (tilt[1] - pitch)
         sunk = [sunk_at(place, tilt, self._before) for place in footing.places]
         low = [leg for leg, on in enumerate(footing.down) if on and depths[leg] > self._scale * _LOW]
-        if self.leg is not None:
-            self.leg = self.leg if sunk[self.leg] > self._scale * _SINKS / 2 else None
-        elif low:
-            deepest = max(low, key=sunk.__getitem__)
-            self.leg = deepest if sunk[deepest] > self._scale * _SINKS else None
+        least = self._scale * (_SINKS if self.leg is None else _SINKS / 2)
+        leg = max(low, key=sunk.__getitem__, default=None) if self.leg is None else self.leg
+        self.leg = leg if leg is not None and sunk[leg] > least else None
 
 
 class Sinking:
