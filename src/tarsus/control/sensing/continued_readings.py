@@ -46,8 +46,8 @@ class ContinuedReadings:
 
     def __init__(self, robot: Robot) -> None:
         self.valid, self._validator = ValidReadings(), ReadingsValidator(robot)
-        # The readings that were returned last, as they were measured, and which channels they have.
-        self._last, self._given = self.valid, [False] * len(CHANNELS)
+        # The readings that were returned last, as they were measured.
+        self._last = self.valid
         # For how long a channel of the body (leg -1), or a leg's reading in one, has been missing [s].
         self._missing = dict[tuple[str, int], float]()
         self._now = 0.0
@@ -75,11 +75,10 @@ class ContinuedReadings:
         while self._now - self._commands[0][0] > _KEPT:
             self._commands.popleft()
         valid = self.valid = self._validator.validate(readings, dt)
-        given = [value is not None for value in valid[: len(CHANNELS)]]
-        if given != self._given or valid.rejected:
+        channels = zip(valid[: len(CHANNELS)], self._last[: len(CHANNELS)], strict=True)
+        if valid.rejected or any((now is None) is not (last is None) for now, last in channels):
             valid = self._held(valid, dt)
-            self._given = [value is not None for value in valid[: len(CHANNELS)]]
-        elif self._missing:
+        else:
             self._missing.clear()
         self._last = valid
         return valid if valid.joint_angles is None else self._predicted(valid, dt, lag)

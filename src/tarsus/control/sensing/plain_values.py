@@ -47,8 +47,6 @@ def as_items(value: Any, *shapes: tuple[int, ...]) -> Sequence[Any] | None:
         Shapes accepted of an array; a list or tuple needs the length of the first one, whatever its items are.
     """
     try:
-        if type(value) is np.ndarray:  # the common case
-            return value.tolist() if value.shape in shapes else None
         if issubclass(type(value), list | tuple):
             # Indexing bounds the work for a subclass whose iterator disagrees with its length.
             return [value[i] for i in range(shapes[0][0])] if len(value) == shapes[0][0] else None
@@ -63,7 +61,5 @@ def as_vector(value: Any) -> tuple[float, float, float] | None:
     parts = value if type(value) is list and len(value) == 3 else as_items(value, (3,))
     if parts is None:
         return None
-    x, y, z = parts
-    if type(x) is type(y) is type(z) is float:  # the common case
-        return x, y, z
-    return as_number(x), as_number(y), as_number(z)
+    x, y, z = map(as_number, parts)
+    return x, y, z

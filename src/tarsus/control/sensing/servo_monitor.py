@@ -160,7 +160,9 @@ class ServoMonitor:
             touches = leg in touching or (False if valid.contacts and valid.contacts[leg] is not None else None)
             if not math.isnan(torque):
                 moves = (now - before) * math.copysign(1.0, asked - now) > _MOVES * dt
-                counts = dt * _weight(error, idle=torque < _IDLE and not moves, touches=bool(touches))
+                pulls = (_STALLED if touches else 1.0) * _over(error, _ERROR, most=_MOST_PULLING)
+                idles = torque < _IDLE and not moves
+                counts = dt * (_over(error, _IDLE_ERROR, most=_MOST_IDLE) if idles else pulls)
             elif joint == _FEMUR:
                 counts = self._femurs.counts(leg, now, error, dt, up=bool(over[leg, joint] > 0.0), touches=touches)
             else:
@@ -217,13 +219,6 @@ class _Femurs:
             counts = min(counts, _RAISED - counted) if known else _STALLED * counts
         self._now[leg] = counted + counts, min(lowest, angle)
         return counts
-
-
-def _weight(error: float, *, idle: bool, touches: bool) -> float:
-    """Return for how much an error counts of a servo that idles or pulls; the ground may stall one."""
-    if idle:
-        return _over(error, _IDLE_ERROR, most=_MOST_IDLE)
-    return (_STALLED if touches else 1.0) * _over(error, _ERROR, most=_MOST_PULLING)
 
 
 def _over(error: float, bound: float, *, most: float) -> float:
