@@ -119,11 +119,13 @@ def test_the_body_fits_itself_to_the_reach_and_gives_way_where_it_cannot():
     posture = PostureFeedback("level")
     rises = [0.3 * foot.real for foot in FEET]
     for _ in range(300):
-        posture.fit_to_reach((rises, rises), (-1.0, 0.0), 0.02, reach=([-0.06] * 6, [0.2] * 6), height=0.2, share=1.0)
+        posture.fit_to_reach([(rises, rises)], (-1.0, 0.0), 0.02, reach=([-0.06] * 6, [0.2] * 6), height=0.2, share=1.0)
     assert posture.raised == pytest.approx(-0.021, abs=1e-6)
     assert posture.given_way == 0.0
     for _ in range(300):
-        posture.fit_to_reach((rises, rises), (-1.0, 0.0), 0.02, reach=([-0.06] * 6, [0.06] * 6), height=0.2, share=0.7)
+        posture.fit_to_reach(
+            [(rises, rises)], (-1.0, 0.0), 0.02, reach=([-0.06] * 6, [0.06] * 6), height=0.2, share=0.7
+        )
     assert posture.raised == pytest.approx(0.0, abs=1e-6)
     assert posture.given_way == pytest.approx(0.3)
 
@@ -133,7 +135,7 @@ def test_the_body_fits_itself_to_the_next_footholds_as_far_as_its_feet_keep_the_
     for ahead, raised in ((0.05, 0.01), (-0.07, -0.01), (0.12, 0.06), (-0.14, -0.04)):
         posture, next_ones = PostureFeedback("level"), ([ahead] * 6, [ahead] * 6)
         for _ in range(300):
-            posture.fit_to_reach(level, (-1.0, 0.0), 0.02, reach=reach, height=0.2, share=1.0, ahead=next_ones)
+            posture.fit_to_reach([next_ones, level], (-1.0, 0.0), 0.02, reach=reach, height=0.2, share=1.0)
         # At 120 mm and -140 mm the next footholds would need 80 mm.
         assert posture.raised == pytest.approx(raised, abs=1e-6)
 

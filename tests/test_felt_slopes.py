@@ -69,7 +69,9 @@ def test_a_plane_is_levelled_by_the_attitude_of_the_body():
 
 def test_the_body_follows_the_share_of_a_slope_that_the_legs_do_not_reach():
     posture, slope = PostureFeedback("level"), 0.5
-    posture.fit_to_reach(([0.0] * 6, [0.0] * 6), (0.0, 0.0), 0.02, reach=([-0.1] * 6, [0.1] * 6), height=0.1, share=0.7)
+    posture.fit_to_reach(
+        [([0.0] * 6, [0.0] * 6)], (0.0, 0.0), 0.02, reach=([-0.1] * 6, [0.1] * 6), height=0.1, share=0.7
+    )
     pitch = 0.0
     for _ in range(2000):
         plane = FootPlane(0.0, math.tan(slope + pitch), 0.0)
@@ -157,7 +159,7 @@ def test_the_body_is_raised_where_it_would_touch_a_slope():
     posture = PostureFeedback("level")
     for _ in range(100):
         posture.fit_to_reach(
-            ([0.0] * 6, [0.0] * 6), (0.03, 0.0), 0.02, reach=([-0.1] * 6, [0.1] * 6), height=0.1, share=1.0
+            [([0.0] * 6, [0.0] * 6)], (0.03, 0.0), 0.02, reach=([-0.1] * 6, [0.1] * 6), height=0.1, share=1.0
         )
     assert posture.raised == pytest.approx(0.03)
 

@@ -104,32 +104,30 @@ class PostureFeedback:
 
     def fit_to_reach(
         self,
-        rises: _Ranges,
+        rises: Sequence[_Ranges],
         raises: tuple[float, float],
         dt: float,
         *,
         reach: _Ranges,
         height: float,
         share: float,
-        ahead: _Ranges | None = None,
     ) -> None:
         """Change the height to keep towards the one at which all legs reach the plane of the feet.
 
         Parameters
         ----------
-        rises : tuple of sequence of float
-            Least and greatest height of each foot over the plane's height at the origin [m].
+        rises : sequence of (sequence of float, sequence of float)
+            Least and greatest height of each foot over the plane's height at the origin [m]; those at the next
+            footholds, where these are known, before those of now: no foot is taken off the ground for them.
         raises : tuple of float
             How much higher than commanded the body is at least, and how much higher it should be [m].
         dt, reach : float, tuple of sequence of float
             Length of the tick [s]; least and greatest height of each foot [m].
         height, share : float
             Commanded height of the body [m]; share of the slope that legs and body have room for, 0 to 1.
-        ahead : tuple of sequence of float, optional
-            The same heights at the next footholds, where these are known: no foot is taken off the ground for them.
         """
         wanted = raises[1]
-        for least, most in (_heights(feet, reach, raises[0]) for feet in (ahead or rises, rises)):
+        for least, most in (_heights(feet, reach, raises[0]) for feet in rises):
             wanted = max(min(wanted, most), least) if most >= least else (most + least) / 2
         wanted = max(wanted, -_MOST_LOWER * height)
         self.given_way = 1 - share

@@ -222,7 +222,8 @@ class BodyMotion:
         stands = all(contacts.stands(leg) for leg, on in enumerate(down) if on)
         now = reach.rises(plane, over, bears=bears, hanging=hanging)
         lower = 0.0 if self.ground.given else _LOWER * self.roughness.value
-        rises = [rise - lower for rise in now], now
+        here, ahead = ([rise - lower for rise in now], now), self.ground.rises_ahead(reach) if stands else None
+        rises = [ahead, here] if ahead else [here]
         height, swing_height = state.posture.value[[2, SWING_HEIGHT]].tolist()
         level = plane.levelled(self.tilt)
         highest = reach.highest_stand(swing_height, hangs=bool(hanging))
@@ -234,5 +235,4 @@ class BodyMotion:
         rise, clearance = self.stance.underside(plane, height)
         raises = (rise - clearance, wanted)
         reached = [low + self.lowered for low in reach.lowest], highest
-        ahead = self.ground.rises_ahead(reach) if stands else None
-        self._posture.fit_to_reach(rises, raises, dt, reach=reached, height=height, share=share, ahead=ahead)
+        self._posture.fit_to_reach(rises, raises, dt, reach=reached, height=height, share=share)
