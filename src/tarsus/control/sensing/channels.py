@@ -7,7 +7,7 @@ import sys
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
 from operator import le
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import TYPE_CHECKING, Any, TypeAlias, TypeVar
 
 import numpy as np
 
@@ -35,6 +35,8 @@ _TURNS = f"changes faster than {math.degrees(_MOST_TURN):.4g} deg/s"
 # How far beyond their limits joints may be measured, and by how much angles may change at once [rad]; how much faster
 # than its servo without load a joint may be turned.
 _OUTSIDE, _JUMP, _FASTER = 0.5, 0.5, 2.0
+_FINITE = (-sys.float_info.max, sys.float_info.max)
+_Bounds: TypeAlias = "tuple[float | Float[np.ndarray, '...'], float | Float[np.ndarray, '...']]"
 _NOT_NUMBERS = (math.nan, math.nan, math.nan)
 # Greatest force on one foot, in weights of the robot, and greatest torque, in stall torques of the joint's servo.
 _MOST_WEIGHTS, _MOST_STALLS = 4.0, 1.5
@@ -53,16 +55,15 @@ def channels_of(robot: Robot) -> dict[str, Any]:
     """Return the channels of the readings of a single robot, by their names."""
     legs, weight = robot.leg_codes, known_weight(robot) or _ANY_WEIGHT
     force, fastest = _MOST_WEIGHTS * weight, float(joint_limits(robot).speed.max())
-    torque = np.array(
-        [[_MOST_STALLS * (s.stall_torque if s else _ANY_STALL_TORQUE) for s in row] for row in robot.servos]
-    )
+    stalls = [[servo.stall_torque if servo else _ANY_STALL_TORQUE for servo in row] for row in robot.servos]
+    torque = _MOST_STALLS * np.array(stalls)
     pull = np.array([-force, -force, -_PULL * weight])
     return {
         "contacts": _ContactChannel(legs),
         "attitude": _AttitudeChannel(),
         "joint_angles": _JointAngleChannel(legs, np.asarray(robot.limits), fastest),
-        "forces": _VectorChannel("forces", legs, low=pull, high=force, beyond=_TOO_HEAVY, accept_z=True),
-        "torques": _VectorChannel("torques", legs, low=-torque, high=torque, beyond=_TOO_STRONG),
+        "forces": _VectorChannel("forces", legs, (pull, force), beyond=_TOO_HEAVY, accept_z=True),
+        "torques": _VectorChannel("torques", legs, (-torque, torque), beyond=_TOO_STRONG),
         **{name: _VectorChannel(name, legs) for name in _FINITE_CHANNELS},
         "angular_rates": _AngularRateChannel(["angular_rates"]),
         "ground": _GroundChannel(["ground"]),
@@ -168,14 +169,14 @@ class _LegChannel(_Channel, ABC):
     def __init__(self, name: str, legs: Sequence[str], kind: type, *shapes: tuple[int, ...]) -> None:
         super().__init__([f"{name} of {leg}" for leg in legs])
         self._shapes, self._wrong_shape = shapes, f"{name}: expected one reading per leg"
-        self._usual = np.dtype(kind), shapes[0]
+        self._usual = np.dtype(kind)
 
     def read(self, value: Any, rejected: list[str]) -> tuple[Any, ...] | None:
         """Return the accepted readings; None for a leg, or for all, where none is.
 
         The reasons of rejections are appended to `rejected`.
         """
-        usual = type(value) is np.ndarray and (value.dtype, value.shape) == self._usual
+        usual = type(value) is np.ndarray and value.dtype is self._usual and value.shape == self._shapes[0]
         if usual and not any(self._unsettled) and (found := self._read_usual(value.ravel().tolist())):
             return found
         items = as_items(value, *self._shapes)
@@ -216,7 +217,7 @@ class _VectorChannel(_LegChannel):
     ----------
     name, legs : str, sequence of str
         Name of the channel in messages; names of the legs in messages.
-    low, high : float or array, shape (3,) or (legs, 3)
+    bounds : tuple of (float or array, shape (3,) or (legs, 3))
         Between which each number is plausible; left out, every finite one is.
     beyond : str
         The reason given for numbers outside these ranges.
@@ -225,18 +226,11 @@ class _VectorChannel(_LegChannel):
     """
 
     def __init__(
-        self,
-        name: str,
-        legs: Sequence[str],
-        *,
-        low: float | Float[np.ndarray, "..."] = -sys.float_info.max,
-        high: float | Float[np.ndarray, "..."] = sys.float_info.max,
-        beyond: str = "",
-        accept_z: bool = False,
+        self, name: str, legs: Sequence[str], bounds: _Bounds = _FINITE, *, beyond: str = "", accept_z: bool = False
     ) -> None:
         shape = (len(legs), 3)
         super().__init__(name, legs, float, shape, *([shape[:1]] if accept_z else []))
-        self._low, self._high = (np.broadcast_to(bound, shape).ravel().tolist() for bound in (low, high))
+        self._low, self._high = (np.broadcast_to(bound, shape).ravel().tolist() for bound in bounds)
         self._beyond, self._accept_z = beyond, accept_z
 
     def _read_usual(self, numbers: list[float]) -> tuple[Vector, ...] | None:
@@ -267,8 +261,8 @@ class _JointAngleChannel(_VectorChannel):
 
     def __init__(self, legs: Sequence[str], limits: Float[np.ndarray, "legs 3 2"], speed: float) -> None:
         beyond = f"beyond the joint's limits by more than {math.degrees(_OUTSIDE):.3g} deg"
-        low, high = limits[..., 0] - _OUTSIDE, limits[..., 1] + _OUTSIDE
-        super().__init__("joint_angles", legs, low=low, high=high, beyond=beyond)
+        bounds = limits[..., 0] - _OUTSIDE, limits[..., 1] + _OUTSIDE
+        super().__init__("joint_angles", legs, bounds, beyond=beyond)
         # The last plausible angles of all legs, NaN before, and when those of each leg were read.
         self._last, self._read, self._speed = [*_NOT_NUMBERS] * len(legs), [0.0] * len(legs), speed
 
