@@ -915,7 +915,7 @@ def test_feet_put_down_early_because_the_robot_tips_or_is_lifted_are_still_due(p
     controller = tarsus.WalkController(setup.robot)
     ground, touching = controller._walk.ground, tarsus.SensorReadings(contacts=[not in_air] * 6)
     ground.missing.tips, ground.condition.airborne = complex(tips), float(in_air)
-    after, landed = ground.sense(touching, 0.01, state, timing=timing, angles=controller.angles)
+    after, landed = ground.sense(touching, 0.01, state, timing=timing, angles=controller.angles.tolist())
     assert ground.condition.in_air == in_air
     assert sorted(landed) == [0, 2, 4]
     assert after.down.all()

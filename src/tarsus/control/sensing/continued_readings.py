@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from tarsus.control.readings import CHANNELS, SensorReadings, ValidReadings
+from tarsus.control.readings import CHANNELS, SensorReadings, ValidReadings, Vector
 from tarsus.control.sensing.validation import ReadingsValidator
 from tarsus.robot.robot import Robot
 
@@ -51,21 +51,19 @@ class ContinuedReadings:
         # For how long a channel of the body (leg -1), or a leg's reading in one, has been missing [s].
         self._missing = dict[tuple[str, int], float]()
         self._now = 0.0
-        self._commands: deque[tuple[float, Float[np.ndarray, "legs 3"]]] = deque()
+        self._commands: deque[tuple[float, list[Vector]]] = deque()
         # Ages of joint angles, of all joints or of each, and those of new ones [s].
         self._ages: float | Float[np.ndarray, "legs 3"] = _KEPT
         self._usual = math.inf
 
-    def step(
-        self, readings: SensorReadings | None, commanded: Float[np.ndarray, "legs 3"], dt: float, *, lag: float
-    ) -> ValidReadings:
+    def step(self, readings: SensorReadings | None, commanded: list[Vector], dt: float, *, lag: float) -> ValidReadings:
         """Return the readings of now; joint angles with the age that new ones have.
 
         Parameters
         ----------
         readings : SensorReadings or None
             The readings that are given.
-        commanded : array, shape (legs, 3)
+        commanded : list of (coxa, femur, tibia)
             Joint angles that were commanded in the last tick [rad].
         dt, lag : float
             Time since the last tick; from a command to its reading [s].
@@ -111,7 +109,7 @@ class ContinuedReadings:
         if valid.rejected:
             old += [leg for leg, angles in enumerate(valid.joint_angles or ()) if angles is None]
         if old:
-            shape = self._commands[-1][1].shape
+            shape = np.shape(self._commands[-1][1])
             before, ages = np.broadcast_to(self._ages, shape), np.broadcast_to(ages, shape).copy()
             ages[old] = before[old] + dt
         self._ages = ages
@@ -119,7 +117,7 @@ class ContinuedReadings:
         self._usual = usual = min(youngest, self._usual + _SLOWER * dt)
         if ages is youngest and ages <= usual + _SAME * dt:
             return valid
-        held = np.broadcast_to(ages, self._commands[-1][1].shape) - usual
+        held = np.broadcast_to(ages, np.shape(self._commands[-1][1])) - usual
         moved, predicted = self._moved(held, lag), np.flatnonzero(held[:, 0] > _SAME * dt)
         angles = [
             leg and (leg[0] + coxa, leg[1] + femur, leg[2] + tibia)

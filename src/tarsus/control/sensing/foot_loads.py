@@ -69,7 +69,7 @@ class FootLoads:
         return _ESTIMATED_DESCENT if self.estimated else _DESCENT
 
     def contacts(
-        self, valid: ValidReadings, commanded: Sequence[Vector], state: GaitState, dt: float
+        self, valid: ValidReadings, commanded: list[Vector], state: GaitState, dt: float
     ) -> Sequence[bool | None] | None:
         """Return which feet touch the ground: from switches, else load cells, else joint angles; None where unknown.
 
@@ -79,7 +79,7 @@ class FootLoads:
         ----------
         valid : ValidReadings
             The readings.
-        commanded : sequence of (coxa, femur, tibia)
+        commanded : list of (coxa, femur, tibia)
             Joint angles that were commanded in the last tick [rad].
         state, dt : GaitState, float
             The gait state; time since the last tick [s].
@@ -99,7 +99,7 @@ class FootLoads:
         return [None if force is None else force[2] - zero > least for force, zero in cells]
 
     def offsets(
-        self, valid: ValidReadings, commanded: Sequence[Vector], state: GaitState, dt: float, *, out: Sequence[int]
+        self, valid: ValidReadings, commanded: list[Vector], state: GaitState, dt: float, *, out: Sequence[int]
     ) -> Float[np.ndarray, "legs"] | None:
         """Return the upward offsets of compliant feet by measured forces, or by joint torques [m]; None of stiff ones.
 
@@ -109,7 +109,7 @@ class FootLoads:
         ----------
         valid : ValidReadings
             The readings.
-        commanded : sequence of (coxa, femur, tibia)
+        commanded : list of (coxa, femur, tibia)
             Joint angles that were commanded in the last tick [rad].
         state, dt, out : GaitState, float, sequence of int
             The gait state; length of the tick [s]; legs that are taken out of the gait: they bear no load.

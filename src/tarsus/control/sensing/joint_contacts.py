@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections import deque
-from collections.abc import Sequence
 
 import numpy as np
 
@@ -92,16 +91,14 @@ class JointContacts:
         # For how long each foot that should stand has borne load [s].
         self._borne = [2 * _LONG] * robot.legs
 
-    def contacts(
-        self, valid: ValidReadings, commanded: Sequence[Vector], state: GaitState, dt: float
-    ) -> list[bool] | None:
+    def contacts(self, valid: ValidReadings, commanded: list[Vector], state: GaitState, dt: float) -> list[bool] | None:
         """Return which feet touch the ground; None where nothing is known.
 
         Parameters
         ----------
         valid : ValidReadings
             The readings, with joint angles.
-        commanded : sequence of (coxa, femur, tibia)
+        commanded : list of (coxa, femur, tibia)
             Joint angles that were commanded in the last tick [rad].
         state, dt : GaitState, float
             The gait state; time since the last tick [s].

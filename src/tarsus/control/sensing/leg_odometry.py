@@ -122,16 +122,14 @@ class LegOdometry:
         wanted, most = _GAIN * self.behind, _MOST * speed
         return wanted * min(1.0, most / max(abs(wanted), 1e-12))
 
-    def feet_off_commanded(
-        self, legs: Sequence[int], valid: ValidReadings, commanded: Sequence[Vector]
-    ) -> dict[int, Vector]:
+    def feet_off_commanded(self, legs: list[int], valid: ValidReadings, commanded: list[Vector]) -> dict[int, Vector]:
         """Return how far feet are from where they are commanded, of those of some legs whose angles are measured.
 
         Parameters
         ----------
-        legs, valid : sequence of int, ValidReadings
+        legs, valid : list of int, ValidReadings
             The legs; the readings.
-        commanded : sequence of (coxa, femur, tibia)
+        commanded : list of (coxa, femur, tibia)
             Commanded joint angles of each leg [rad].
 
         Returns
@@ -147,12 +145,12 @@ class LegOdometry:
         off = [(x - wanted_x, y - wanted_y, z - wanted_z) for (x, y, z), (wanted_x, wanted_y, wanted_z) in feet]
         return {leg: off[leg] for leg in legs if measured[leg] is not None}
 
-    def tracking_error(self, valid: ValidReadings, commanded: Sequence[Vector], yaw: float, leg: int) -> complex:
+    def tracking_error(self, valid: ValidReadings, commanded: list[Vector], yaw: float, leg: int) -> complex:
         """Return how far a foot is from where it is commanded, horizontally in G; 0 where that is not measured [m].
 
         Parameters
         ----------
-        valid, commanded : ValidReadings, sequence of (coxa, femur, tibia)
+        valid, commanded : ValidReadings, list of (coxa, femur, tibia)
             The readings; commanded joint angles of each leg [rad].
         yaw, leg : float, int
             Yaw of the body [rad]; the leg.

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import cmath
 import math
-from collections.abc import Sequence
 
 from tarsus.control.limitation import Limitation, LimitationKind
 from tarsus.control.limiter.stopped_body import StoppedBody
@@ -184,7 +183,7 @@ class BodyMotion:
         self.rates = self._posture.rates(self.ground.plane, self.tilt, self._move)
 
     def sinks_at(
-        self, state: GaitState, footing: Footing, valid: ValidReadings, commanded: Sequence[Vector], dt: float
+        self, state: GaitState, footing: Footing, valid: ValidReadings, commanded: list[Vector], dt: float
     ) -> int | None:
         """Return the leg of a foot that bears load and sinks, where the heights of all such feet are measured.
 
@@ -192,7 +191,7 @@ class BodyMotion:
         ----------
         state, footing, valid : GaitState, Footing, ValidReadings
             The gait state; the feet; the readings.
-        commanded, dt : sequence of (coxa, femur, tibia), float
+        commanded, dt : list of (coxa, femur, tibia), float
             Joint angles of each leg that are commanded [rad]; time since the last call [s].
         """
         heights = dict[int, float]()

@@ -87,13 +87,7 @@ class FeltGround:
         self._rests, self._ticks, self._unread, self._idle, self._next_lift = True, 0, 0.0, 0.0, NextLift()
 
     def sense(
-        self,
-        readings: SensorReadings | None,
-        dt: float,
-        state: GaitState,
-        *,
-        timing: StepTiming,
-        angles: Float[np.ndarray, "legs 3"],
+        self, readings: SensorReadings | None, dt: float, state: GaitState, *, timing: StepTiming, angles: list[Vector]
     ) -> tuple[GaitState, list[int]]:
         """Return the gait state after the readings of a tick, and the legs whose feet have landed by them.
 
@@ -103,17 +97,15 @@ class FeltGround:
             The readings.
         dt, state, timing : float, GaitState, StepTiming
             Time since the last tick [s]; the gait state; the gait and its frequency.
-        angles : array, shape (legs, 3)
-            Joint angles [rad].
+        angles : list of (coxa, femur, tibia)
+            Joint angles that were commanded in the last tick [rad].
         """
         valid = self.measured = self.readings.step(readings, angles, dt, lag=self._swings.lag)
-        down, self._commanded = state.down.tolist(), angles.tolist()
+        down, self._commanded = state.down.tolist(), angles
         # Without torques, a servo that pushes on as its foot is to get past an obstacle looks like one that has failed.
         lands = [on and not self.missing.obstacles.tries(leg) for leg, on in enumerate(down)]
-        stopped = self._swings.step(
-            [coxa for coxa, _, _ in self._commanded], valid, dt, down if valid.torques else lands
-        )
-        measured = self._loads.contacts(valid, self._commanded, state, dt)
+        stopped = self._swings.step([coxa for coxa, _, _ in angles], valid, dt, down if valid.torques else lands)
+        measured = self._loads.contacts(valid, angles, state, dt)
         if not state.felt:
             if measured is None and valid.attitude is None:
                 return state, []
@@ -134,12 +126,11 @@ class FeltGround:
         rests = self._rests and self.support.held
         self.contacts.step(measured, down, dt, count=ticks, lands=lands, leaving=leaving, rests=rests, carried=carried)
         self.condition.step([*map(self.contacts.touches, range(len(down)))], valid.attitude, dt, held=self.support.held)
-        self.offsets = self._loads.offsets(valid, self._commanded, state, dt, out=self._given[0])
+        self.offsets = self._loads.offsets(valid, angles, state, dt, out=self._given[0])
         if self.missing.stranded and all(down):
             state = timing.with_first_lift(state, self.missing.stranded[0])
         pace = self.support.pace
-        yaw = state.yaw + float(state.moved_posture[5])
-        off = partial(self.body.odometry.tracking_error, valid, self._commanded, yaw)
+        off = partial(self.body.odometry.tracking_error, valid, angles, state.yaw + float(state.moved_posture[5]))
         state, landed = met_ground(state, self.body, self.missing, stopped=stopped, error=off, timing=timing, pace=pace)
         if self.missing.tips or self.condition.carried or (self.missing.refuses and self.support.halts):
             state, swung = put_down(state, timing=timing, pace=pace)

@@ -24,7 +24,7 @@ def estimated(walk: WalkComponents, tick: TickState, readings: SensorReadings | 
     if readings is None and not tick.gait.felt:
         return tick
     timing, angles = walk.transitions.timing, walk.time_scaling.angles
-    state, legs = walk.ground.sense(readings, dt, tick.gait, timing=timing, angles=angles)
+    state, legs = walk.ground.sense(readings, dt, tick.gait, timing=timing, angles=angles.tolist())
     if not state.felt:
         # The guard checks the feet of a walk that does not feel the ground: compensated, they drag.
         return tick
