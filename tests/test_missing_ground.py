@@ -50,9 +50,9 @@ def stepped(
     age=0.0,
 ):
     missing.twist, missing.lost = twist, lost
-    searches = [Search(*search, sunk=sunk[search[0]], raised=raised, leans=leans) for search in searches]
+    searches = [Search(*search, sunk=sunk[search[0]], raised=raised, leans=leans, age=age) for search in searches]
     footholds = SimpleNamespace(rest=np.array(REST), placement_radii=[0.05] * 6)
-    missing.step(searches, Footing(feet, stands, centre, 0.1), dt, footholds=footholds, deeper=deeper, age=age)
+    missing.step(searches, Footing(feet, stands, centre, 0.1), dt, footholds=footholds, deeper=deeper)
     return missing
 
 

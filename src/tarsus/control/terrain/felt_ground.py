@@ -239,7 +239,7 @@ class FeltGround:
         elif missing.lost is None:
             missing.lost = self.body.sinks_at(state, footing, self.measured, self._commanded, dt)
         footing = footing._replace(down=[on and stand for on, stand in zip(footing.down, stands, strict=True)])
-        missing.step(searches, footing, dt, footholds=footholds, deeper=deeper, age=contacts.age)
+        missing.step(searches, footing, dt, footholds=footholds, deeper=deeper)
         self.body.roughness.at_edge(missing.edge)
         return stands
 
@@ -252,7 +252,7 @@ class FeltGround:
             place, foot = footing.places[leg], state.felt[leg]
             depth = self.ground.lowest_near(place) + state.elevation - float(state.ground_height[leg])
             known = foot.speed < -_FALLS, contacts.seeks(leg), contacts.sunk[leg], off[leg][2] if leg in off else 0.0
-            found.append(Search(leg, depth, *known, sunk_at(place, self.body.off)))
+            found.append(Search(leg, depth, *known, sunk_at(place, self.body.off), contacts.age))
         return found
 
     def _under(self, state: GaitState, leg: int, place: complex, *, down: bool) -> GroundUnder:

@@ -131,14 +131,7 @@ class MissingGround:
             self._cause = Cause("the robot tips at the foot", self._names[leg])
 
     def step(
-        self,
-        searches: Sequence[Search],
-        footing: Footing,
-        dt: float,
-        *,
-        footholds: FootholdTransfer,
-        deeper: float,
-        age: float,
+        self, searches: Sequence[Search], footing: Footing, dt: float, *, footholds: FootholdTransfer, deeper: float
     ) -> None:
         """Decide for a tick.
 
@@ -148,8 +141,8 @@ class MissingGround:
             Feet that should stand and feel nothing.
         footing, dt : Footing, float
             The feet, and which of them stand; length of the tick [s].
-        footholds, deeper, age : FootholdTransfer, float, float
-            Rest footholds and their bounds; how much deeper ground may be than expected [m]; age of the contacts [s].
+        footholds, deeper : FootholdTransfer, float
+            Rest footholds and their bounds; how much deeper ground may be than expected [m].
         """
         (feet, stands, centre, height), rest = footing, footholds.rest.tolist()
         if not searches:
@@ -173,7 +166,7 @@ class MissingGround:
         slows, deep = deeper + self._scale * _SLOWS, deeper + self._scale * _STANDS
         sure = deeper <= self._scale * _SURE
         for search in searches:
-            leg, depth, falls, lasts, sunk, raised, leans = search
+            leg, depth, falls, lasts, sunk, raised, leans, age = search
             way = self._edge.seen_from(feet[leg], rest[leg])
             slowest = 0.0 if falls else _SLOWEST
             pace = max(1 - (depth - slows) / (deep - slows), slowest)

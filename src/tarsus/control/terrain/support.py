@@ -43,6 +43,8 @@ class Search(NamedTuple):
     sunk, raised, leans : float
         By how much the body has sunk at the foot since that lost its contact; by how much the foot is higher than
         commanded, where that is measured; by how much the body is lower there than in the attitude to keep [m].
+    age : float
+        Time since contacts are measured [s].
     """
 
     leg: int
@@ -52,6 +54,7 @@ class Search(NamedTuple):
     sunk: float = 0.0
     raised: float = 0.0
     leans: float = 0.0
+    age: float = 0.0
 
 
 class Footing(NamedTuple):
