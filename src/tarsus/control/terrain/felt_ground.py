@@ -159,12 +159,9 @@ class FeltGround:
         due = None if standing else timing.due(state, dt)
         dt, self._idle = self._idle, 0.0
         steps = [leg not in excluded for leg in range(len(state.foot))]
-        footing = Footing(
-            state.in_heading(state.foot).tolist(),
-            [on and step for on, step in zip(state.down.tolist(), steps, strict=True)],
-            along_gravity(self._centre, state.moved_posture.tolist(), self.body.tilt or (0.0, 0.0)),
-            float(state.posture.value[2]),
-        )
+        down = [on and step for on, step in zip(state.down.tolist(), steps, strict=True)]
+        centre = along_gravity(self._centre, state.moved_posture.tolist(), self.body.tilt or (0.0, 0.0))
+        footing = Footing(state.in_heading(state.foot).tolist(), down, centre, float(state.posture.value[2]))
         if self.body.looks:
             free = [on and leg not in self.missing.obstacles.legs for leg, on in enumerate(footing.down)]
             self.body.step(tick, self.measured, footing._replace(down=free), transitions, pace=self.support.pace)

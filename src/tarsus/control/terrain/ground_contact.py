@@ -171,16 +171,12 @@ def _rising_again(state: GaitState, leg: int, reach: Reach, timing: StepTiming, 
     """Return the state with a foot that lags behind its command: it draws back from an obstacle and rises higher."""
     height, foot, foothold = float(state.ground_height[leg]), complex(state.foot[leg]), complex(state.foothold[leg])
     highest = state.elevation + reach.highest_on_way(leg, state.in_heading(foot), state.in_heading(foothold))[0]
-    top, way, phase = state.felt[leg].top, foothold - foot, float(state.swing_phase[leg])
+    way, phase = foothold - foot, float(state.swing_phase[leg])
     rises = min(_RISING / timing.swing_time, 1.0 - phase)
     back = error - reach.scale * _DRAWN_BACK * way / max(abs(way), 1e-9)
-    felt = _with(
-        state.felt,
-        leg,
-        top=min((height if math.isnan(top) else max(top, height)) + reach.scale * _HIGHER, max(highest, height)),
-        top_phase=phase + rises,
-        drawn_back=foot + back,
-    )
+    # The top is NaN, and not the greater one, of a foot that has had none.
+    top = min(max(height, state.felt[leg].top) + reach.scale * _HIGHER, max(highest, height))
+    felt = _with(state.felt, leg, top=top, top_phase=phase + rises, drawn_back=foot + back)
     velocity, acceleration = state.swing_velocity.copy(), state.swing_acceleration.copy()
     velocity[leg], acceleration[leg] = _AT_ONCE * back / rises, 0j
     return state._replace(felt=felt, swing_velocity=velocity, swing_acceleration=acceleration)

@@ -85,9 +85,8 @@ class Reach:
             aside = np.sign(((rest - self._mounts) * along.conj()).imag.round(_DECIMALS))
             # Of a robot that stops, the body keeps its height.
             self.bows = np.where(strokes == 0, self.bows, self.scale * _BOW * 1j * along * aside)
-            (lowest, lowest_beside), (highest, highest_beside) = reachable_heights(
-                self._robot, posture, np.array([rest, rest + self.bows]), strokes
-            )
+            heights = reachable_heights(self._robot, posture, np.array([rest, rest + self.bows]), strokes)
+            (lowest, lowest_beside), (highest, highest_beside) = heights
             # Ends of strokes beyond the limits of the coxa are not walked; a leg that reaches nowhere keeps its reach.
             walked = lowest < highest
             kept = ~walked.any(axis=0)
