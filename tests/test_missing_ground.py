@@ -427,7 +427,7 @@ def test_a_foot_that_is_stopped_tries_again_then_beside_it_and_then_stays_before
     granted = 0
     for _ in range(9):
         for _ in range(100):
-            assert not stepped(missing, [], REST, stands=[True] * 6).obstacles.legs
+            assert not stepped(missing, [], REST, stands=[True] * 6).obstacles.stops
         # It is tried with other footholds once.
         if limited(missing, 0.1, 0.0, 0.0).fraction == 1.0:
             granted += 1

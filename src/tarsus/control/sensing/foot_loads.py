@@ -59,11 +59,6 @@ class FootLoads:
         self._filter = AdmittanceFilter(admittance, robot.legs) if admittance else None
 
     @property
-    def compliant(self) -> bool:
-        """Whether the feet yield to forces; only then are forces of use."""
-        return self._filter is not None
-
-    @property
     def fastest_descent(self) -> float:
         """Greatest speed with which feet may go down in search of the ground [m/s]."""
         return _ESTIMATED_DESCENT if self.estimated else _DESCENT

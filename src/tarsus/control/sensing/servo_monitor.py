@@ -102,7 +102,9 @@ class ServoMonitor:
         self._evidence: Float[np.ndarray, "2 legs 3"] | None = None
         # Legs that have been found, and those whose feet touched as joints were last looked at.
         self._found, self._touched = set[int](), set[int]()
-        self._femurs = _Femurs()
+        # Of femurs that were off when joints were last looked at: what has counted since the foot touched or the femur
+        # was not held up, and its lowest angle since [rad].
+        self._raised = dict[int, tuple[float, float]]()
         # What was measured and commanded, since joints were last looked at for whether they are stuck.
         self._compared: list[tuple[Float[np.ndarray, "legs 3"], Float[np.ndarray, "legs 3"]]] = []
         self._last: Float[np.ndarray, "legs 3"] | None = None
@@ -136,7 +138,7 @@ class ServoMonitor:
         touched, self._touched = self._touched, {leg for leg, touches in enumerate(valid.contacts or ()) if touches}
         # A foot that presses on moving ground loses touch for a moment, in which its servo is stalled as before.
         touching = touched | self._touched
-        self._femurs.look()
+        raised, self._raised = self._raised, {}
         for leg in self._found - self.failed.keys():
             # It is to be used again: what has told against it does not count any more.
             assert self._evidence is not None  # what it was found by
@@ -164,7 +166,8 @@ class ServoMonitor:
                 idles = torque < _IDLE and not moves
                 counts = dt * (_over(error, _IDLE_ERROR, most=_MOST_IDLE) if idles else pulls)
             elif joint == _FEMUR:
-                counts = self._femurs.counts(leg, now, error, dt, up=bool(over[leg, joint] > 0.0), touches=touches)
+                up = bool(over[leg, joint] > 0.0)
+                counts, self._raised[leg] = _of_femur(raised.get(leg), now, error, dt, up=up, touches=touches)
             else:
                 share = _MAY_BE_STALLED if touches is None else _STALLED if touches else 1.0
                 counts = dt * share * _over(error, _ERROR, most=_MOST_WEIGHT)
@@ -195,30 +198,28 @@ class ServoMonitor:
         return stuck if stuck.any() else None
 
 
-class _Femurs:
-    """What errors of femurs count for whose torque is not measured: the ground may hold them up, at the foot or not."""
+def _of_femur(
+    raised: tuple[float, float] | None, angle: float, error: float, dt: float, *, up: bool, touches: bool | None
+) -> tuple[float, tuple[float, float]]:
+    """Return for how much an error of a femur counts, and what is kept of it; the ground may hold the leg up.
 
-    def __init__(self) -> None:
-        # At the last look and at this one, of those that are off: what has counted since a foot touched or the femur
-        # was not held up, and its lowest angle since [rad].
-        self._last, self._now = dict[int, tuple[float, float]](), dict[int, tuple[float, float]]()
-
-    def look(self) -> None:
-        """Begin another look."""
-        self._last, self._now = self._now, {}
-
-    def counts(self, leg: int, angle: float, error: float, dt: float, *, up: bool, touches: bool | None) -> float:
-        """Return for how much an error counts, upwards or not; whether the foot touches may be unknown."""
-        if touches or not up:
-            self._now[leg] = 0.0, angle
-            return dt * (_STALLED if touches else 1.0) * _over(error, _ERROR, most=_MOST_WEIGHT)
-        counted, lowest = self._last.get(leg, (0.0, angle - error))
-        gives_way, known = error > _GIVES_WAY and angle - lowest > _PUSHED, touches is not None
-        counts = dt * _over(error, _ERROR, most=_MOST_GIVING_WAY if gives_way and known else _MOST_WEIGHT)
-        if not gives_way:
-            counts = min(counts, _RAISED - counted) if known else _STALLED * counts
-        self._now[leg] = counted + counts, min(lowest, angle)
-        return counts
+    Parameters
+    ----------
+    raised : (float, float) or None
+        What was kept at the last look; None if the femur was not off.
+    angle, error, dt : float
+        Measured angle [rad]; error [rad]; time since the last look [s].
+    up, touches : bool, bool or None
+        Whether the femur is higher than commanded; whether the foot touches the ground, None where that is unknown.
+    """
+    if touches or not up:
+        return dt * (_STALLED if touches else 1.0) * _over(error, _ERROR, most=_MOST_WEIGHT), (0.0, angle)
+    counted, lowest = raised or (0.0, angle - error)
+    gives_way, known = error > _GIVES_WAY and angle - lowest > _PUSHED, touches is not None
+    counts = dt * _over(error, _ERROR, most=_MOST_GIVING_WAY if gives_way and known else _MOST_WEIGHT)
+    if not gives_way:
+        counts = min(counts, _RAISED - counted) if known else _STALLED * counts
+    return counts, (counted + counts, min(lowest, angle))
 
 
 def _over(error: float, bound: float, *, most: float) -> float:

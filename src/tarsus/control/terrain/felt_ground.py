@@ -163,7 +163,7 @@ class FeltGround:
         centre = along_gravity(self._centre, state.moved_posture.tolist(), self.body.tilt or (0.0, 0.0))
         footing = Footing(state.in_heading(state.foot).tolist(), down, centre, float(state.posture.value[2]))
         if self.body.looks:
-            free = [on and leg not in self.missing.obstacles.legs for leg, on in enumerate(footing.down)]
+            free = [on and leg not in self.missing.obstacles.stops for leg, on in enumerate(footing.down)]
             self.body.step(tick, self.measured, footing._replace(down=free), transitions, pace=self.support.pace)
             self.ground.choose(state, self.body.reach, footholds)
         stands = self._find_ground(state, footing, footholds, dt)
@@ -178,7 +178,7 @@ class FeltGround:
         travel = travel_share(far, self.contacts.age / timing.swing_time)
         inputs = self._feet_inputs(state, (under, stands, steps), travel)._replace(redundant=timing.redundant)
         # It stays while all is as planned; yielding feet and a walk that slows down are looked at in each tick.
-        self._inputs = None if self._loads.compliant or self.support.pace < 1.0 else inputs
+        self._inputs = None if self.offsets is not None or self.support.pace < 1.0 else inputs
         return inputs
 
     def _feet_inputs(

@@ -151,7 +151,7 @@ class MissingGround:
         self.places |= beside
         searching = {search.leg for search in searches} | beside.keys()
         # Past an obstacle, a foot looks for the ground like any other.
-        past = {leg for leg in self.obstacles.legs if not self.steps_back(leg, feet[leg])}
+        past = {leg for leg in self.obstacles.stops if not self.steps_back(leg, feet[leg])}
         for leg in [leg for leg in self.places if leg not in searching or leg in past]:
             self.drop(leg)
             self._tries[leg] = 0
@@ -219,7 +219,7 @@ class MissingGround:
             enough = max(self._tries) < len(_BACK) and not self._edge.turns
             enough &= holds(firm, centre + self._scale * _MARGIN * self._edge.way)
             # From a foot behind the body, it would back off over the hole; where legs do not reach, there is none.
-            backs = not shallow and max(along) > self._edge.along(centre) and not (self.obstacles.legs or enough)
+            backs = not shallow and max(along) > self._edge.along(centre) and not (self.obstacles.stops or enough)
             velocity = -speed * self._edge.way * backs
         self.back = velocity * (self._backed < most)
         self._backed += abs(self.back) * dt
@@ -240,7 +240,7 @@ class MissingGround:
     def _tip(self, way: complex) -> None:
         """Take note that the robot tips this way: no foot tries to get past an obstacle then."""
         self.tips = way
-        for leg in self.obstacles.legs:
+        for leg in list(self.obstacles.stops):
             self.drop(leg)
 
     def drop(self, leg: int) -> None:

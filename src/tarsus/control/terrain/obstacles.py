@@ -25,21 +25,19 @@ class Obstacles:
     ----------
     found : complex
         The direction of the obstacle that no foot got past; 0 without one.
+    stops : dict of int to (int, complex, complex)
+        By leg, how often its foot was stopped, where first, and where it was to go, in the heading frame [m].
     """
 
     def __init__(self, scale: float) -> None:
         self.found, self._scale = 0j, scale
-        # How often each foot was stopped, where first, and where it was to go; where it goes on to from beside its way.
-        self._stops, self._goals = dict[int, tuple[int, complex, complex]](), dict[int, complex]()
-
-    @property
-    def legs(self) -> list[int]:
-        """Legs whose feet are stopped."""
-        return list(self._stops)
+        self.stops = dict[int, tuple[int, complex, complex]]()
+        # Where feet go on to from beside their ways.
+        self._goals = dict[int, complex]()
 
     def tries(self, leg: int) -> bool:
         """Return whether a foot is to get past an obstacle, and is not put down before it."""
-        return leg in self._stops and self._stops[leg][0] <= _STOPS + _SIDES
+        return leg in self.stops and self.stops[leg][0] <= _STOPS + _SIDES
 
     def leaves(self, way: complex) -> bool:
         """Return whether a way of a foot, in the heading frame, leads away from the obstacle that was found."""
@@ -62,8 +60,8 @@ class Obstacles:
         start, place : complex
             Where it is drawn back to; where it goes from there, the same place if it was stopped too often [m].
         """
-        stops, start, goal = self._stops.get(leg, (1, foot, goal))
-        self._stops[leg], way = (stops + 1, start, goal), goal - start
+        stops, start, goal = self.stops.get(leg, (1, foot, goal))
+        self.stops[leg], way = (stops + 1, start, goal), goal - start
         way /= max(abs(way), _NO_WAY)
         start -= self._scale * _BEFORE * way
         self._goals.pop(leg, None)
@@ -90,9 +88,9 @@ class Obstacles:
 
     def led_away(self, leads: Callable[[complex], bool]) -> list[int]:
         """Return the legs with feet that try to get past an obstacle, where a twist leads back on their way."""
-        return [leg for leg, (_, start, goal) in self._stops.items() if self.tries(leg) and leads(start - goal)]
+        return [leg for leg, (_, start, goal) in self.stops.items() if self.tries(leg) and leads(start - goal)]
 
     def forget(self, leg: int) -> None:
         """Forget that a foot was stopped."""
-        self._stops.pop(leg, None)
+        self.stops.pop(leg, None)
         self._goals.pop(leg, None)
