@@ -119,11 +119,10 @@ class ServoMonitor:
         valid, dt : ValidReadings, float
             The readings; legs without measured joint angles are not monitored; time since the last tick [s].
         """
-        commands = self._commands
-        commands.append((dt, commanded))
+        self._commands.append((dt, commanded))
         self._span += dt
         while self._span > _LAG + dt:
-            self._span -= commands.popleft()[0]
+            self._span -= self._commands.popleft()[0]
         if valid.joint_angles is None:
             return
         self._since += dt

@@ -271,7 +271,5 @@ class FootContacts:
 
     def supports(self, leg: int) -> bool:
         """Return whether a foot that should stand counts as support."""
-        if leg in self.hovering:
-            return False
         grace = _GRACE if self._settled[leg] > _SETTLED else 0.0
-        return self._without[leg] <= grace or self.is_open(leg)
+        return (self._without[leg] <= grace or self.is_open(leg)) and leg not in self.hovering
