@@ -56,10 +56,6 @@ def stepped(
     return missing
 
 
-def as_commanded(leg):
-    return 0j
-
-
 def touching_in_swing(phase, height, foot):
     """State, body and timing of a walk whose first foot swings, and touches the ground again since a moment."""
     setup, lifted = setup_of("strider"), np.arange(6) == 0
@@ -945,7 +941,7 @@ def test_while_the_walk_waits_a_foot_on_its_way_down_stands_on_lower_ground_that
     pace, phase, speed, height, lands
 ):
     state, body, timing = touching_in_swing(phase, height, FeltFoot(speed=speed, top=0.03, top_phase=0.42))
-    _, landed = met_ground(state, body, MissingGround(NAMES), stopped=[], error=as_commanded, timing=timing, pace=pace)
+    _, landed = met_ground(state, body, MissingGround(NAMES), stopped=[], timing=timing, pace=pace)
     assert landed == [0] * lands
 
 
@@ -955,7 +951,7 @@ def test_a_foot_that_rises_along_an_obstacle_does_not_stand_on_it(phase, tries):
     rising = FeltFoot(top=0.03, top_phase=0.65, drawn_back=complex(state.foot[0]) - 0.008)
     state = state._replace(foothold=state.foothold + 0.05, felt=[rising, *state.felt[1:]])
     missing = MissingGround(NAMES)
-    after, landed = met_ground(state, body, missing, stopped=[], error=as_commanded, timing=timing, pace=1.0)
+    after, landed = met_ground(state, body, missing, stopped=[], timing=timing, pace=1.0)
     assert landed == [0] * tries
     assert list(missing.places) == [0] * tries
     assert after.down[0] == bool(tries)
@@ -970,7 +966,7 @@ def test_a_foot_that_is_high_over_an_obstacle_and_does_not_go_down_touches_its_s
     high = FeltFoot(speed=speed, top=0.05, top_phase=0.6, drawn_back=complex(state.foot[0]) - 0.05)
     state = state._replace(foothold=state.foothold + on, felt=[high, *state.felt[1:]])
     missing = MissingGround(NAMES)
-    met_ground(state, body, missing, stopped=[], error=as_commanded, timing=timing, pace=1.0)
+    met_ground(state, body, missing, stopped=[], timing=timing, pace=1.0)
     assert list(missing.places) == [0] * tries
 
 
@@ -981,9 +977,7 @@ def test_a_foot_that_is_stopped_while_it_tries_again_is_drawn_back_once_more():
     missing.stopped(0, foot, foot + 0.1, 0j)
     for under_way in (True, False):
         feet = [rising if under_way else FeltFoot(), *state.felt[1:]]
-        after, landed = met_ground(
-            state._replace(felt=feet), body, missing, stopped=[0], error=as_commanded, timing=timing, pace=0.0
-        )
+        after, landed = met_ground(state._replace(felt=feet), body, missing, stopped=[0], timing=timing, pace=0.0)
         assert not landed
         # Slides back, and rises; one that rises already goes on.
         assert (after.felt[0].slide != 0j) == (not under_way)
@@ -994,15 +988,8 @@ def test_a_foot_that_collides_is_drawn_back_from_where_it_is_measured():
     state, body, timing = touching_in_swing(0.3, 0.02, FeltFoot(top=0.03, top_phase=0.42))
     state = state._replace(foothold=state.foothold + 0.05)
     for lag in (0.0, 0.03):
-        after, _ = met_ground(
-            state,
-            body,
-            MissingGround(NAMES),
-            stopped=[],
-            error=lambda _, lag=lag: -lag,
-            timing=timing,
-            pace=1.0,
-        )
+        body.tracking_error = lambda *_, lag=lag: -lag
+        after, _ = met_ground(state, body, MissingGround(NAMES), stopped=[], timing=timing, pace=1.0)
         assert after.felt[0].drawn_back == pytest.approx(state.foot[0] - lag - 0.008)
         # At once, so that a stiff leg does not drag on the obstacle: most of the way in a third of the time.
         back, left = after.felt[0].drawn_back - state.foot[0], after.felt[0].top_phase - 0.3
@@ -1012,7 +999,7 @@ def test_a_foot_that_collides_is_drawn_back_from_where_it_is_measured():
     # The next time it is drawn back by 40 mm from where it is.
     again = state._replace(swing_phase=state.swing_phase + 0.6, felt=after.felt)
     missing = MissingGround(NAMES)
-    met_ground(again, body, missing, stopped=[0], error=lambda _: -0.03, timing=timing, pace=1.0)
+    met_ground(again, body, missing, stopped=[0], timing=timing, pace=1.0)
     start, _ = missing.obstacles.stopped(0, 0j, 0j, 0j)
     assert start == pytest.approx(state.in_heading(complex(state.foot[0]) - 0.03 - 0.04))
 
@@ -1021,7 +1008,7 @@ def test_a_foot_that_collides_is_drawn_back_from_where_it_is_measured():
 def test_a_swinging_foot_that_a_sinking_body_sets_down_has_met_no_obstacle(sunk, collides):
     state, body, timing = touching_in_swing(0.3, 0.03, FeltFoot(speed=0.0, top=0.05, top_phase=0.42))
     body.contacts.sunk[0] = sunk
-    after, _ = met_ground(state, body, MissingGround(NAMES), stopped=[], error=as_commanded, timing=timing, pace=1.0)
+    after, _ = met_ground(state, body, MissingGround(NAMES), stopped=[], timing=timing, pace=1.0)
     assert (after.felt[0].drawn_back is not None) == (body.roughness.value > 0.0) == collides
 
 
@@ -1030,7 +1017,7 @@ def test_ground_that_a_foot_meets_sooner_as_the_body_tips_towards_it_is_not_roug
     state, body, timing = touching_in_swing(0.8, height, FeltFoot(speed=-0.1, top=0.03, top_phase=0.42))
     body.contacts.sunk[0], expected = sunk, Roughness(tarsus.GroundAdaptation())
     expected.landed(off)
-    met_ground(state, body, MissingGround(NAMES), stopped=[], error=as_commanded, timing=timing, pace=1.0)
+    met_ground(state, body, MissingGround(NAMES), stopped=[], timing=timing, pace=1.0)
     assert body.roughness.value == pytest.approx(expected.value)
 
 

@@ -59,17 +59,18 @@ def test_heights_of_feet_are_measured_along_gravity():
     controller = tarsus.WalkController(robot)
     readings = tarsus.SensorReadings(contacts=[True] * 6, attitude=(0.0, 0.0))
     controller.step((0.1, 0.0, 0.0), 0.01, readings)
-    state, body, commanded = controller._tick.gait, controller._walk.ground.body, controller.angles.tolist()
+    state, body = controller._tick.gait, controller._walk.ground.body
     footing, given = STANDING._replace(places=FEET, down=[leg % 2 == 0 for leg in range(6)]), []
     body._sinking.step = lambda heights, *_, **__: given.append(heights)
     pose = tarsus.Pose.from_rpy(position=controller.body.position, pitch=0.1)
     turned = tarsus.inverse_kinematics(robot, controller.feet, pose).angles
     for angles, pitch in ((controller.angles, 0.0), (turned, 0.1)):
         valid = ValidReadings(joint_angles=tuple(map(tuple, angles.tolist())), attitude=(0.0, pitch))
-        body.sinks_at(state, footing, valid, commanded, DT)
-    body.sinks_at(state, footing, valid._replace(joint_angles=None), commanded, DT)
-    body.sinks_at(state, footing, valid._replace(attitude=None), commanded, DT)
-    body.sinks_at(state, footing, valid._replace(predicted=frozenset({2})), commanded, DT)
+        body.measured, body.commanded = valid, controller.angles.tolist()
+        body.sinks_at(state, footing, DT)
+    for unknown in ({"joint_angles": None}, {"attitude": None}, {"predicted": frozenset({2})}):
+        body.measured = valid._replace(**unknown)
+        body.sinks_at(state, footing, DT)
     assert given[0].keys() == given[1].keys() == {0, 2, 4}
     relative = [[heights[leg] - heights[0] for leg in (2, 4)] for heights in given[:2]]
     assert relative[0] == pytest.approx(relative[1], abs=2e-3)

@@ -145,19 +145,6 @@ class LegOdometry:
         off = [(x - wanted_x, y - wanted_y, z - wanted_z) for (x, y, z), (wanted_x, wanted_y, wanted_z) in feet]
         return {leg: off[leg] for leg in legs if measured[leg] is not None}
 
-    def tracking_error(self, valid: ValidReadings, commanded: list[Vector], yaw: float, leg: int) -> complex:
-        """Return how far a foot is from where it is commanded, horizontally in G; 0 where that is not measured [m].
-
-        Parameters
-        ----------
-        valid, commanded : ValidReadings, list of (coxa, femur, tibia)
-            The readings; commanded joint angles of each leg [rad].
-        yaw, leg : float, int
-            Yaw of the body [rad]; the leg.
-        """
-        off = self.feet_off_commanded([leg], valid, commanded)
-        return complex(*off[leg][:2]) * cmath.exp(1j * yaw) if off else 0j
-
     def _note_slip(self, feet: list[complex], moved: dict[int, complex], dt: float) -> None:
         """Take note of what the motion over each foot differs by from that of a body that turns over all of them."""
         slides, share = [0j] * len(self.slip), min(dt / _SLIP_TIME, 1.0)

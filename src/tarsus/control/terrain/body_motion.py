@@ -71,6 +71,8 @@ class BodyMotion:
         How much lower loaded feet are commanded than they stand [m].
     since : float
         Time since height, tilt and lost way were looked at [s].
+    measured, commanded : ValidReadings, list of (coxa, femur, tibia)
+        What is measured in this tick; joint angles of each leg that were commanded in the last one [rad].
     """
 
     def __init__(self, robot: Robot, *, levelling: Levelling | None, adaptation: GroundAdaptation) -> None:
@@ -82,6 +84,7 @@ class BodyMotion:
         self.stopped = StoppedBody(robot)
         self.rates, self.drift, self.lowered = PostureRates(), 0j, 0.0
         self.tilt: RollPitch | None = None
+        self.measured, self.commanded = ValidReadings(), list[Vector]()
         self.heading, self._sinking = HeadingFeedback(), Sinking(scale)
         # What the body did when it was looked at, until it is turned by a newer attitude.
         self._move: BodyMove | None = None
@@ -141,17 +144,15 @@ class BodyMotion:
         found = [Limitation(kind=LimitationKind.ATTITUDE, cause=cause)] if self._posture.given_way > 0.0 else []
         return found + self.odometry.limitations
 
-    def step(
-        self, tick: TickState, valid: ValidReadings, footing: Footing, transitions: TransitionExecutor, *, pace: float
-    ) -> None:
+    def step(self, tick: TickState, footing: Footing, transitions: TransitionExecutor, *, pace: float) -> None:
         """Look at plane, reach and lost way, and decide how the body is to move.
 
         Parameters
         ----------
-        tick, valid : TickState, ValidReadings
-            The gait state and the twist that is followed; the readings.
-        footing, transitions, pace : Footing, TransitionExecutor, float
-            The feet that should stand; timing and rest footholds; rate of the steps and the twist, 0 to 1.
+        tick, footing : TickState, Footing
+            The gait state and the twist that is followed; the feet that should stand.
+        transitions, pace : TransitionExecutor, float
+            Timing and rest footholds; rate of the steps and the twist, 0 to 1.
         """
         state, places, dt, self.since = tick.gait, footing.places, self.since, 0.0
         rest, rests = transitions.footholds.rest, not tick.twist.any()
@@ -175,28 +176,36 @@ class BodyMotion:
             self.stance.step(level, rest - self.stance.shift, self.roughness.drawn_in, dt, walks=not rests)
         self._fit_height(state, over, footing.down, bears, dt)
         still = tick.standing and not (state.shift.rate.any() or state.posture.rate.any() or state.twist.value.any())
-        self.heading.step(valid, turning, dt, rests=rests, still=still)
-        self.drift = self.stance.not_downhill(self.odometry.step(valid, bears, commanded, dt))
-        self.stopped.step(valid, bears, velocity, dt, yaw=commanded.yaw)
+        self.heading.step(self.measured, turning, dt, rests=rests, still=still)
+        self.drift = self.stance.not_downhill(self.odometry.step(self.measured, bears, commanded, dt))
+        self.stopped.step(self.measured, bears, velocity, dt, yaw=commanded.yaw)
         margins = [(places[leg], over[leg] - (self.reach.lowest[leg] + self.lowered)) for leg in bears]
         self._move = BodyMove(velocity, margins, self.slope.refuses or rests, pace)
         self.rates = self._posture.rates(self.ground.plane, self.tilt, self._move)
 
-    def sinks_at(
-        self, state: GaitState, footing: Footing, valid: ValidReadings, commanded: list[Vector], dt: float
-    ) -> int | None:
+    def tracking_error(self, state: GaitState, leg: int) -> complex:
+        """Return how far a foot is from where it is commanded, horizontally in G; 0 where that is not measured [m].
+
+        Parameters
+        ----------
+        state, leg : GaitState, int
+            The gait state; the leg.
+        """
+        off = self.odometry.feet_off_commanded([leg], self.measured, self.commanded)
+        yaw = state.yaw + float(state.moved_posture[5])
+        return complex(*off[leg][:2]) * cmath.exp(1j * yaw) if off else 0j
+
+    def sinks_at(self, state: GaitState, footing: Footing, dt: float) -> int | None:
         """Return the leg of a foot that bears load and sinks, where the heights of all such feet are measured.
 
         Parameters
         ----------
-        state, footing, valid : GaitState, Footing, ValidReadings
-            The gait state; the feet; the readings.
-        commanded, dt : list of (coxa, femur, tibia), float
-            Joint angles of each leg that are commanded [rad]; time since the last call [s].
+        state, footing, dt : GaitState, Footing, float
+            The gait state; the feet; time since the last call [s].
         """
-        heights = dict[int, float]()
+        heights, valid = dict[int, float](), self.measured
         bears = [leg for leg, on in enumerate(footing.down) if on and self.contacts.touches(leg)]
-        off = self.odometry.feet_off_commanded(bears if len(bears) <= _FEW else [], valid, commanded)
+        off = self.odometry.feet_off_commanded(bears if len(bears) <= _FEW else [], valid, self.commanded)
         if valid.attitude is not None and len(off) == len(bears) and valid.predicted.isdisjoint(bears):
             tilt, over = off_commanded(valid.attitude, state), state.ground_height.tolist()
             for leg, (x, y, z) in off.items():

@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 import cmath
-from functools import partial
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from tarsus.control.limitation import Limitation, LimitationKind
-from tarsus.control.readings import SensorReadings, ValidReadings, Vector
+from tarsus.control.readings import SensorReadings, Vector
 from tarsus.control.sensing.body_condition import BodyCondition
 from tarsus.control.sensing.continued_readings import ContinuedReadings
 from tarsus.control.sensing.foot_loads import FootLoads
@@ -65,8 +64,8 @@ class FeltGround:
         How the body moves over its standing feet; what is done where feet find no ground.
     condition, support : BodyCondition, Support
         Whether the robot is in the air or has fallen; whether feet may lift off, and at which pace the walk goes on.
-    readings, measured : ContinuedReadings, ValidReadings
-        The readings that were given last; those that were used.
+    readings : ContinuedReadings
+        The readings that were given last.
     offsets : array, shape (legs,), or None
         Upward offsets of compliant feet [m]; None of stiff ones.
     """
@@ -76,10 +75,10 @@ class FeltGround:
     ) -> None:
         self.body, self.contacts, self.ground = body, body.contacts, body.ground
         self.missing = MissingGround(robot.leg_names, scale=body.reach.scale)
-        self.measured, self.support, self.condition = ValidReadings(), Support(), BodyCondition()
+        self.support, self.condition = Support(), BodyCondition()
         self.offsets: Float[np.ndarray, "legs"] | None = None
         self.readings, self._loads, self._tipping = ContinuedReadings(robot), loads, Tipping(body.reach.scale)
-        self._commanded, self._still, self._swings = list[Vector](), True, SwingMonitor()
+        self._still, self._swings = True, SwingMonitor()
         self._centre = complex(*centre_of_mass(robot, angles)[:2].tolist())
         # What feet are given while all is as planned; ticks and times since contacts and support were looked at.
         self._inputs: FeltInputs | None = None
@@ -100,8 +99,8 @@ class FeltGround:
         angles : list of (coxa, femur, tibia)
             Joint angles that were commanded in the last tick [rad].
         """
-        valid = self.measured = self.readings.step(readings, angles, dt, lag=self._swings.lag)
-        down, self._commanded = state.down.tolist(), angles
+        valid = self.body.measured = self.readings.step(readings, angles, dt, lag=self._swings.lag)
+        down, self.body.commanded = state.down.tolist(), angles
         # Without torques, a servo that pushes on as its foot is to get past an obstacle looks like one that has failed.
         lands = [on and not self.missing.obstacles.tries(leg) for leg, on in enumerate(down)]
         stopped = self._swings.step([coxa for coxa, _, _ in angles], valid, dt, down if valid.torques else lands)
@@ -130,8 +129,7 @@ class FeltGround:
         if self.missing.stranded and all(down):
             state = timing.with_first_lift(state, self.missing.stranded[0])
         pace = self.support.pace
-        off = partial(self.body.odometry.tracking_error, valid, angles, state.yaw + float(state.moved_posture[5]))
-        state, landed = met_ground(state, self.body, self.missing, stopped=stopped, error=off, timing=timing, pace=pace)
+        state, landed = met_ground(state, self.body, self.missing, stopped=stopped, timing=timing, pace=pace)
         if self.missing.tips or self.condition.carried or (self.missing.refuses and self.support.halts):
             state, swung = put_down(state, timing=timing, pace=pace)
             landed += swung
@@ -164,7 +162,7 @@ class FeltGround:
         footing = Footing(state.in_heading(state.foot).tolist(), down, centre, float(state.posture.value[2]))
         if self.body.looks:
             free = [on and leg not in self.missing.obstacles.stops for leg, on in enumerate(footing.down)]
-            self.body.step(tick, self.measured, footing._replace(down=free), transitions, pace=self.support.pace)
+            self.body.step(tick, footing._replace(down=free), transitions, pace=self.support.pace)
             self.ground.choose(state, self.body.reach, footholds)
         stands = self._find_ground(state, footing, footholds, dt)
         bearing = footing._replace(down=supporting(state, self.body, footing, walks=not standing))
@@ -212,7 +210,7 @@ class FeltGround:
         """Decide where feet step that find no ground; return which stand, or would, with the robot in the air."""
         contacts, missing, deeper = self.contacts, self.missing, self.body.roughness.deeper
         near, low = not_sunk(state, self.body, footing, tips=bool(missing.tips or missing.places))
-        tilt = self.measured.attitude and off_commanded(self.measured.attitude, state)
+        tilt = self.body.measured.attitude and off_commanded(self.body.measured.attitude, state)
         feet = zip(footing.places, state.ground_height.tolist(), strict=True)
         depths = [self.ground.at(place) + state.elevation - height for place, height in feet]
         contacts.find_open(footing._replace(down=near), tilt, dt, low=low, depths=depths)
@@ -234,7 +232,7 @@ class FeltGround:
             if missing.lost is not None and self._tipping.at_edge:
                 missing.tipped(missing.lost, footing.places[missing.lost])
         elif missing.lost is None:
-            missing.lost = self.body.sinks_at(state, footing, self.measured, self._commanded, dt)
+            missing.lost = self.body.sinks_at(state, footing, dt)
         footing = footing._replace(down=[on and stand for on, stand in zip(footing.down, stands, strict=True)])
         missing.step(searches, footing, dt, footholds=footholds, deeper=deeper)
         self.body.roughness.at_edge(missing.edge)
@@ -244,7 +242,7 @@ class FeltGround:
         """Return the feet that should stand and feel nothing."""
         contacts, found = self.contacts, list[Search]()
         legs = [leg for leg, on in enumerate(footing.down) if on and not stands[leg] and contacts.is_known(leg)]
-        off = self.body.odometry.feet_off_commanded(legs, self.measured, self._commanded)
+        off = self.body.odometry.feet_off_commanded(legs, self.body.measured, self.body.commanded)
         for leg in legs:
             place, foot = footing.places[leg], state.felt[leg]
             depth = self.ground.lowest_near(place) + state.elevation - float(state.ground_height[leg])
@@ -279,7 +277,7 @@ class FeltGround:
     def limitations(self) -> tuple[Limitation, ...]:
         """Readings that are rejected, and what the ground does not allow."""
         missing = self.missing.limitations
-        found = rejections(self.measured) + self.condition.limitations + self.body.limitations + missing
+        found = rejections(self.body.measured) + self.condition.limitations + self.body.limitations + missing
         explained = self.condition.in_air or self.missing.refuses or missing
         if self.support.pace < SLOW and not explained:
             slope, unheld = self.body.slope, "the feet on the ground do not hold the robot"

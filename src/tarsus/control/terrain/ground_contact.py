@@ -4,14 +4,13 @@ from __future__ import annotations
 
 import cmath
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from typing import Any
 
 from tarsus.control.sensing.swing_monitor import USUAL_LAG
 from tarsus.control.terrain.body_motion import BodyMotion
 from tarsus.control.terrain.foot_contacts import FootContacts
 from tarsus.control.terrain.missing_ground import MissingGround
-from tarsus.control.terrain.reach import Reach
 from tarsus.control.terrain.support import HALTING, Footing, sunk_at
 from tarsus.control.walk.felt_feet import ROUNDING, FeltFoot
 from tarsus.control.walk.state import GaitState
@@ -43,25 +42,17 @@ _PUSHES = 0.03
 
 
 def met_ground(
-    state: GaitState,
-    body: BodyMotion,
-    missing: MissingGround,
-    *,
-    stopped: list[int],
-    error: Callable[[int], complex],
-    timing: StepTiming,
-    pace: float,
+    state: GaitState, body: BodyMotion, missing: MissingGround, *, stopped: list[int], timing: StepTiming, pace: float
 ) -> tuple[GaitState, list[int]]:
     """Return the gait state in which feet that meet ground have landed or rise again, and which have landed.
 
     Parameters
     ----------
     state, body : GaitState, BodyMotion
-        The gait state; contacts, expected ground and reach. Its roughness takes note of footholds and collisions.
+        The gait state; contacts, expected ground, reach and how far feet are from their commands. Its roughness takes
+        note of footholds and collisions.
     missing, stopped : MissingGround, list of int
         Decides where feet that are stopped again try next; legs that are stopped on their way.
-    error : callable
-        Returns how far the foot of a leg is from where it is commanded, in G [m].
     timing, pace : StepTiming, float
         The gait and its frequency; rate of the steps, 0 to 1.
     """
@@ -72,13 +63,13 @@ def met_ground(
         meets = contacts.estimator.reads(leg) and contacts.has_opened(leg)
         if down or phase <= _CLEAR:
             if (contacts.feels(leg) or stops) and missing.tries(leg, places[leg]):
-                state = _stopped_again(state, leg, missing, body, error(leg), stopped=stops)
+                state = _stopped_again(state, leg, missing, body, stopped=stops)
             continue
         leaves = missing.obstacles.leaves(state.in_heading(complex(state.foothold[leg])) - places[leg])
         side = contacts.feels(leg) and contacts.lifted[leg]
         if not leaves and _collides_again(state, leg, side=side, stopped=stops, scale=reach.scale):
             contacts.draws_back(leg)
-            state = _trying_again(state, leg, missing, reach, _landed(state, leg, timing, pace), error(leg))
+            state = _trying_again(state, leg, missing, body, _landed(state, leg, timing, pace))
             landed.append(leg)
         elif phase > _LANDING or (pace < HALTING and _stands_below(state, leg, contacts, scale=reach.scale)):
             # Contact that has not ceased since lift-off tells nothing: the foot lands where ground is expected. Nor
@@ -99,7 +90,7 @@ def met_ground(
                 landed.append(leg)
         elif (meets or stops) and not leaves and _collides(state, leg, contacts, stopped=stops, scale=reach.scale):
             body.roughness.collided()
-            state = _rising_again(state, leg, reach, timing, error(leg))
+            state = _rising_again(state, leg, body, timing)
     return state, landed
 
 
@@ -167,13 +158,14 @@ def _collides_again(state: GaitState, leg: int, *, side: bool, stopped: bool, sc
     return not (falls and short) and ((past and stopped) or (side and not (past and falls)))
 
 
-def _rising_again(state: GaitState, leg: int, reach: Reach, timing: StepTiming, error: complex) -> GaitState:
+def _rising_again(state: GaitState, leg: int, body: BodyMotion, timing: StepTiming) -> GaitState:
     """Return the state with a foot that lags behind its command: it draws back from an obstacle and rises higher."""
     height, foot, foothold = float(state.ground_height[leg]), complex(state.foot[leg]), complex(state.foothold[leg])
+    reach = body.reach
     highest = state.elevation + reach.highest_on_way(leg, state.in_heading(foot), state.in_heading(foothold))[0]
     way, phase = foothold - foot, float(state.swing_phase[leg])
     rises = min(_RISING / timing.swing_time, 1.0 - phase)
-    back = error - reach.scale * _DRAWN_BACK * way / max(abs(way), 1e-9)
+    back = body.tracking_error(state, leg) - reach.scale * _DRAWN_BACK * way / max(abs(way), 1e-9)
     # The top is NaN, and not the greater one, of a foot that has had none.
     top = min(max(height, state.felt[leg].top) + reach.scale * _HIGHER, max(highest, height))
     felt = _with(state.felt, leg, top=top, top_phase=phase + rises, drawn_back=foot + back)
@@ -182,13 +174,11 @@ def _rising_again(state: GaitState, leg: int, reach: Reach, timing: StepTiming, 
     return state._replace(felt=felt, swing_velocity=velocity, swing_acceleration=acceleration)
 
 
-def _trying_again(
-    state: GaitState, leg: int, missing: MissingGround, reach: Reach, after: GaitState, error: complex
-) -> GaitState:
+def _trying_again(state: GaitState, leg: int, missing: MissingGround, body: BodyMotion, after: GaitState) -> GaitState:
     """Return the state with a foot that is stopped again: it is drawn back, and tries again while the walk stands."""
-    height, turn = float(state.ground_height[leg]), cmath.exp(1j * state.yaw)
+    reach, height, turn = body.reach, float(state.ground_height[leg]), cmath.exp(1j * state.yaw)
     foot, goal = (state.in_heading(complex(places[leg])) for places in (state.foot, state.foothold))
-    foot += error / turn
+    foot += body.tracking_error(state, leg) / turn
     back = missing.stopped(leg, foot, goal, complex(reach.bows[leg]))
     place = missing.places[leg]
     highest = state.elevation + reach.highest_on_way(leg, place, missing.obstacles.ends(leg, place))[0]
@@ -197,19 +187,17 @@ def _trying_again(
     return after._replace(felt=_with(after.felt, leg, speed=0.0, acceleration=0.0, top=top, slide=slide))
 
 
-def _stopped_again(
-    state: GaitState, leg: int, missing: MissingGround, body: BodyMotion, error: complex, *, stopped: bool
-) -> GaitState:
+def _stopped_again(state: GaitState, leg: int, missing: MissingGround, body: BodyMotion, *, stopped: bool) -> GaitState:
     """Return the state with a foot that meets an obstacle as it steps past it; its switch may stay closed."""
     foot = state.felt[leg]
-    pushes = body.contacts.feels(leg) or abs(error) > body.reach.scale * _PUSHES
+    pushes = body.contacts.feels(leg) or abs(body.tracking_error(state, leg)) > body.reach.scale * _PUSHES
     if foot.top > float(state.ground_height[leg]) or foot.slide or not pushes:
         return state
     body.contacts.draws_back(leg)
     if body.contacts.is_closed(leg) and not stopped:
         missing.drop(leg)
         return state
-    return _trying_again(state, leg, missing, body.reach, state, error)
+    return _trying_again(state, leg, missing, body, state)
 
 
 def _with(feet: Sequence[FeltFoot], leg: int, **values: Any) -> list[FeltFoot]:

@@ -30,9 +30,9 @@ def estimated(walk: WalkComponents, tick: TickState, readings: SensorReadings | 
         return tick
     ground, deflection = walk.ground, walk.solver.deflection
     # Of use where forces are not measured.
-    down = () if ground.measured.forces else state.down.tolist()
+    down = () if ground.body.measured.forces else state.down.tolist()
     bears = [on and ground.contacts.touches(leg) for leg, on in enumerate(down)]
-    deflection.step(ground.measured, angles, dt, slope=abs(ground.body.stance.uphill), bears=bears)
+    deflection.step(ground.body.measured, angles, dt, slope=abs(ground.body.stance.uphill), bears=bears)
     ground.body.lowered = deflection.lowered
     if legs:
         walk.transitions.footholds.feet_landed(np.isin(np.arange(len(state.down)), legs))
