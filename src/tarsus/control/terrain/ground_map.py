@@ -6,7 +6,7 @@ import cmath
 import math
 from collections.abc import Sequence
 from statistics import median
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeAlias
 
 import numpy as np
 
@@ -24,6 +24,9 @@ if TYPE_CHECKING:
     from jaxtyping import Shaped
 
 __all__ = ["GroundMap"]
+
+# Where feet stand, and how high [m].
+_Feet: TypeAlias = Sequence[tuple[complex, float]]
 
 # How fast the slope of the plane follows the feet [1/s].
 _SLOPE_RATE = 2.0
@@ -104,20 +107,13 @@ class GroundMap:
         self._tie()
 
     def step(
-        self,
-        feet: list[tuple[complex, float]],
-        tilt: RollPitch | None,
-        state: GaitState,
-        dt: float,
-        *,
-        drift: complex = 0j,
-        turning: float = 0.0,
+        self, feet: _Feet, tilt: RollPitch | None, state: GaitState, dt: float, *, drift: complex, turning: float = 0.0
     ) -> None:
         """Fit the plane to the standing feet, and tie the known heights to them.
 
         Parameters
         ----------
-        feet : list of (complex, float)
+        feet : sequence of (complex, float)
             The feet that bear load: where, and how high, in the heading frame [m].
         tilt : (roll, pitch) or None
             By how much the heading frame is tilted [rad].
