@@ -9,7 +9,8 @@ STANDING = Footing(FEET, [True] * 6, 0j, 0.1)
 def take_in(contacts, readings, down, dt, *, count=1, lands=None, leaving=None, rests=False, carried=False):
     """Take in contacts of feet none of which lifts off soon or passes an obstacle, of a robot that walks."""
     lands, leaving = down if lands is None else lands, [False] * len(down) if leaving is None else leaving
-    contacts.step(readings, down, dt, count=count, lands=lands, leaving=leaving, rests=rests, carried=carried)
+    lands = [on and not carried for on in lands]
+    contacts.step(readings, down, dt, count=count, lands=lands, leaving=leaving, rests=rests)
 
 
 def find_open(contacts, footing, tilt, dt, *, low=None, depths=None):

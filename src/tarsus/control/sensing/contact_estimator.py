@@ -4,10 +4,14 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from typing import TypeAlias
 
 from tarsus.control.walk.state import GaitState
 
-__all__ = ["ContactEstimator"]
+__all__ = ["ContactEstimator", "Contacts"]
+
+Contacts: TypeAlias = Sequence[bool | None] | None
+"""Which feet touch the ground, as measured, None for one that is not; None where nothing is."""
 
 # Bound of the log odds: what a foot has been doing is forgotten by evidence of this size.
 _BOUND = 6.0
@@ -50,13 +54,13 @@ class ContactEstimator:
         self._last: list[tuple[bool, bool]] = [(True, True)] * legs
         self._wrong, self._read = _ERROR * _WEIGHT, _WEIGHT
 
-    def step(self, readings: Sequence[bool | None] | None, dt: float, *, count: int = 1) -> None:
+    def step(self, readings: Contacts, dt: float, *, count: int = 1) -> None:
         """Take in the contacts of one tick.
 
         Parameters
         ----------
-        readings : sequence of (bool or None), or None
-            Which feet touch the ground, as measured; None where nothing is.
+        readings : Contacts
+            Which feet touch the ground, as measured.
         dt, count : float, int
             Time since the last tick [s]; how many readings have been the same, this one included.
         """
@@ -83,13 +87,13 @@ class ContactEstimator:
         """Return whether a foot bears load, more probably than not, and its last reading says so."""
         return self.touching[leg] and self._last[leg][1]
 
-    def as_planned(self, readings: Sequence[bool | None] | None, state: GaitState, lifted: Sequence[bool]) -> bool:
+    def as_planned(self, readings: Contacts, state: GaitState, lifted: Sequence[bool]) -> bool:
         """Return whether the feet touch the ground that should, and no others, and that is certain.
 
         Parameters
         ----------
-        readings : sequence of (bool or None), or None
-            Which feet touch the ground, as measured; None where nothing is.
+        readings : Contacts
+            Which feet touch the ground, as measured.
         state : GaitState
             Which feet should stand; those that have just lifted off may touch the ground still, or not any more.
         lifted : sequence of bool

@@ -10,6 +10,7 @@ import numpy as np
 
 from tarsus.control.pose.admittance import Admittance, AdmittanceFilter
 from tarsus.control.readings import ValidReadings, Vector
+from tarsus.control.sensing.contact_estimator import Contacts
 from tarsus.control.sensing.joint_contacts import JointContacts
 from tarsus.control.walk.state import GaitState
 from tarsus.kinematics.mass import known_weight
@@ -63,9 +64,7 @@ class FootLoads:
         """Greatest speed with which feet may go down in search of the ground [m/s]."""
         return _ESTIMATED_DESCENT if self.estimated else _DESCENT
 
-    def contacts(
-        self, valid: ValidReadings, commanded: list[Vector], state: GaitState, dt: float
-    ) -> Sequence[bool | None] | None:
+    def contacts(self, valid: ValidReadings, commanded: list[Vector], state: GaitState, dt: float) -> Contacts:
         """Return which feet touch the ground: from switches, else load cells, else joint angles; None where unknown.
 
         Joint torques do not tell: position-controlled legs press against each other, and a swinging leg is accelerated.
@@ -86,7 +85,7 @@ class FootLoads:
             self.estimated = found is not None
         return found
 
-    def _felt(self, valid: ValidReadings) -> Sequence[bool | None] | None:
+    def _felt(self, valid: ValidReadings) -> Contacts:
         """Return what switches tell, or else load cells."""
         if valid.contacts is not None or valid.forces is None or not self._weight:
             return valid.contacts

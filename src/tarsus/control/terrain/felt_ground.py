@@ -121,9 +121,10 @@ class FeltGround:
         # A greater lag of the joints than usual makes contacts late.
         self.contacts.age = max(valid.contact_age, self._swings.lag - USUAL_LAG)
         self.contacts.estimated = self._loads.estimated
-        leaving, carried = timing.due(state, _LEAVING), self.condition.carried
-        rests = self._rests and self.support.held
-        self.contacts.step(measured, down, dt, count=ticks, lands=lands, leaving=leaving, rests=rests, carried=carried)
+        leaving, rests = timing.due(state, _LEAVING), self._rests and self.support.held
+        # Those of a robot that is carried find no ground: they wait.
+        lands = [on and not self.condition.carried for on in lands]
+        self.contacts.step(measured, down, dt, count=ticks, lands=lands, leaving=leaving, rests=rests)
         self.condition.step([*map(self.contacts.touches, range(len(down)))], valid.attitude, dt, held=self.support.held)
         self.offsets = self._loads.offsets(valid, angles, state, dt, out=self._given[0])
         if self.missing.stranded and all(down):

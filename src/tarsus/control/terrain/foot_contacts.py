@@ -4,12 +4,16 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from typing import TypeAlias
 
 from tarsus.control.readings import RollPitch
-from tarsus.control.sensing.contact_estimator import ContactEstimator
+from tarsus.control.sensing.contact_estimator import ContactEstimator, Contacts
 from tarsus.control.terrain.support import Footing, holds, sunk_at
 
 __all__ = ["FootContacts"]
+
+# Which feet something holds for.
+_Feet: TypeAlias = Sequence[bool]
 
 # A foot that has been without contact for longer has left the ground, or has lost it [s].
 _LOST = 0.03
@@ -73,7 +77,7 @@ class FootContacts:
         self.hovering = list[int]()
         # Which feet were to stand; in how many swings in a row each switch has stayed closed; how often its foot has
         # landed since it was taken to be open.
-        self._down: Sequence[bool] = [True] * legs
+        self._down: _Feet = [True] * legs
         self._closed, self._landings = [_STAYS_CLOSED] * legs, [0] * legs
         self.estimated, self._scale, self._unheld, self._tilt = False, scale, 0.0, (0.0, 0.0)
         # The last tilt that was measured, and that of each foot when it lost its contact [rad].
@@ -82,35 +86,24 @@ class FootContacts:
         self._without, self._evidence, self._settled, self._searched = ([0.0] * legs for _ in range(4))
 
     def step(
-        self,
-        readings: Sequence[bool | None] | None,
-        down: Sequence[bool],
-        dt: float,
-        *,
-        count: int,
-        lands: Sequence[bool],
-        leaving: Sequence[bool],
-        rests: bool,
-        carried: bool,
+        self, readings: Contacts, down: _Feet, dt: float, *, count: int, lands: _Feet, leaving: _Feet, rests: bool
     ) -> None:
         """Take in the contacts of one tick, or of some in which they are the same.
 
         Parameters
         ----------
-        readings : sequence of (bool or None), or None
-            Which feet touch the ground, as measured; None where nothing is.
+        readings : Contacts
+            Which feet touch the ground, as measured.
         down : sequence of bool
             Which feet should stand.
         dt, count : float, int
             Time since the last tick [s]; number of ticks.
         lands : sequence of bool
-            Which of them are not on their way past an obstacle: these do not look for the ground yet.
+            Which of them look for the ground: none on its way past an obstacle, or of a robot that is carried.
         leaving : sequence of bool
             Which feet are to lift off soon: once these have stood, they are not lowered where others take their load.
         rests : bool
             Whether the robot stands still and is held by the feet that bear load: those that have stood stay, then.
-        carried : bool
-            Whether the robot is in the air, or is being put down.
         """
         self.estimator.step(readings, dt, count=count)
         for leg, (on, leaves) in enumerate(zip(down, leaving, strict=True)):
@@ -132,8 +125,8 @@ class FootContacts:
             self.lifted[leg] = not on and (self.lifted[leg] or self._without[leg] > _LOST)
             stays = rests or (leaves and self._without[leg] < _LEAVES)
             self.standing[leg] = self._bears(leg) or (stays and self._settled[leg] > _SETTLED)
-            # Feet of a robot that rests are hardly lowered, those of one that is carried find nothing: they wait.
-            searches = lands[leg] and not (rests or carried or self.standing[leg])
+            # Feet of a robot that rests are hardly lowered: they wait.
+            searches = lands[leg] and not (rests or self.standing[leg])
             self._searched[leg] = (self._searched[leg] + dt) * searches
         self._down = down
 
