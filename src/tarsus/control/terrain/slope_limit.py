@@ -38,15 +38,16 @@ class SlopeLimit:
         Steepest slope that is walked [rad].
     slope : float
         The slope under the feet; where motion is refused, the steepest one since then [rad].
-    refuses : bool
-        Whether the motion is refused, as feet slip or the body tips.
+    refused, refuses : float, bool
+        Which motion is refused, positive for one further up and negative for one further down, 0 for none; whether the
+        one that is followed is, as feet slip or the body tips.
     """
 
     def __init__(self, friction: float) -> None:
         self.steepest = math.atan(max(friction - _PRELOAD, 0.0))
         self.slope, self.refuses = 0.0, False
         # Whether the body is too far off its attitude, how far it is, and in the mean [rad].
-        self._tilts, self._off, self._mean, self._refused = False, 0.0, 0.0, 0.0
+        self._tilts, self._off, self._mean, self.refused = False, 0.0, 0.0, 0.0
         self._uphill, self._stops, self._tips = 0j, False, False
 
     def step(self, level: FootPlane, velocity: complex, dt: float, *, off: float = 0.0) -> None:
@@ -64,17 +65,17 @@ class SlopeLimit:
         self._mean += min(dt / _MEAN, 1.0) * (off - self._mean)
         self._off, self._tilts = off, slope > _SLOPES and off > (_LEVELLED if self._tilts else _OFF)
         if slope < self.steepest - _HYSTERESIS and not self._tilts:
-            self._refused = 0.0
-        elif (slope > self.steepest or self._tilts) and not self._refused:
-            self._refused = rises
-        self.slope = max(self.slope, slope) if self._refused else slope
+            self.refused = 0.0
+        elif (slope > self.steepest or self._tilts) and not self.refused:
+            self.refused = rises
+        self.slope = max(self.slope, slope) if self.refused else slope
         self._tips = off > self._mean + _TIPS or slope > self.steepest - _HYSTERESIS
         # The way back stays open.
-        self.refuses = self._refused * rises > 0 and not self._stops
+        self.refuses = self.refused * rises > 0 and not self._stops
 
     def limit(self, request: TwistRequest, grant: TwistGrant) -> TwistGrant:
         """Return the grant, without a twist further up or down while the body is off level: feet step on the spot."""
-        leads = self._tilts and self._refused * self._rises(complex(*request.twist[:2])) > 0
+        leads = self._tilts and self.refused * self._rises(complex(*request.twist[:2])) > 0
         # While it tips, the walk waits.
         self._stops = leads and (self._stops or not self._tips)
         if self._stops:
@@ -83,11 +84,6 @@ class SlopeLimit:
 
     def _rises(self, velocity: complex) -> float:
         return (velocity * self._uphill.conjugate()).real
-
-    @property
-    def refused(self) -> bool:
-        """Whether motion further up or down is refused."""
-        return self._refused != 0.0
 
     @property
     def holds(self) -> bool:
