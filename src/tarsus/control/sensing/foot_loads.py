@@ -29,9 +29,6 @@ _CONTACT_SHARE = 0.04
 _RISEN, _LANDS, _RATE, _MOST_ERROR, _MOST_OFFSET = 0.2, 0.5, 5.0, 0.1, 0.15
 # Joint angles tell of contacts once nothing else has for so long [s].
 _UNTOLD = 0.15
-# Greatest speed of feet that go down; where contacts are estimated, feet press on the ground before they are known to
-# touch it [m/s].
-_DESCENT, _ESTIMATED_DESCENT = 0.4, 0.25
 
 
 class FootLoads:
@@ -58,11 +55,6 @@ class FootLoads:
         # What load cells measure without a load [N].
         self._zeros = [0.0] * robot.legs
         self._filter = AdmittanceFilter(admittance, robot.legs) if admittance else None
-
-    @property
-    def fastest_descent(self) -> float:
-        """Greatest speed with which feet may go down in search of the ground [m/s]."""
-        return _ESTIMATED_DESCENT if self.estimated else _DESCENT
 
     def contacts(self, valid: ValidReadings, commanded: list[Vector], state: GaitState, dt: float) -> Contacts:
         """Return which feet touch the ground: from switches, else load cells, else joint angles; None where unknown.

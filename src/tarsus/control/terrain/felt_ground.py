@@ -38,6 +38,9 @@ __all__ = ["FeltGround"]
 _DEPTH_SHARE, _ROUGH = 0.6, 0.006
 # How soon feet lift off that are not lowered any more [s].
 _LEAVING = 0.1
+# Greatest speed of feet that go down; where contacts are estimated, feet press on the ground before they are known to
+# touch it [m/s].
+_DESCENT, _ESTIMATED_DESCENT = 0.4, 0.25
 # Of feet that look for the ground while others hold a standing robot: speed, depth below the expected ground [m/s, m].
 _GENTLE, _NEAR = 0.02, 0.004
 # A foot that goes down faster has not come to the end of its reach, which sinks with the body [m/s].
@@ -188,6 +191,7 @@ class FeltGround:
         # The body levels about its middle, which its feet pass below.
         passing = complex(-body.rates.turn[1], body.rates.turn[0]) * float(state.posture.value[2])
         scale, depth = body.reach.scale, _DEPTH_SHARE * body.roughness.value
+        descent = _ESTIMATED_DESCENT if self._loads.estimated else _DESCENT
         return FeltInputs(
             *feet,
             depth=depth,
@@ -198,7 +202,7 @@ class FeltGround:
             travel=travel,
             pace=self.support.pace,
             swing_height=float(state.posture.value[SWING_HEIGHT]) + body.roughness.swing_rise,
-            lowering=scale * (_GENTLE if gently else self._loads.fastest_descent),
+            lowering=scale * (_GENTLE if gently else descent),
             scale=scale,
             late=self.contacts.age,
             beside=self.ground.beside,
