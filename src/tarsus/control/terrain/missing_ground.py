@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from functools import partial
 
 from tarsus.control.limitation import Cause, Limitation, LimitationKind
 from tarsus.control.limiter.protocol import TwistGrant, TwistRequest, leads_towards
@@ -284,7 +283,7 @@ class MissingGround:
         self._leaves = velocity * (bool(self.stranded) and leads_towards(-velocity, self._edge.way or self._edge.left))
         if self.refuses:
             return grant.at_most(0.0, self._cause.limitation(LimitationKind.GROUND))
-        for leg in self.obstacles.led_away(partial(leads_towards, velocity)):
+        for leg in self.obstacles.led_away(lambda way: leads_towards(velocity, way)):
             self.drop(leg)
         if any(request.twist) and not self.places and self._edge.way:
             self._edge.leave(self.obstacles.found)
