@@ -298,7 +298,6 @@ def test_a_foot_passes_over_what_is_on_its_way_and_rises_first_where_that_is_nea
 
 def test_the_body_knows_of_steps_before_its_feet_are_on_them():
     known, reach = GroundMap(), SimpleNamespace(rest=np.array(REST), strokes=np.full(6, 0.1 + 0j))
-    assert known.rises_ahead(reach) is None
     known.step(standing(lambda place: 0.0), None, at(), 0.03, drift=0j)
     known.see(
         ValidReadings(ground=GroundHeights(heights=np.where(X > 0.21, 0.08, np.where(np.abs(Y) > 0.21, -0.05, 0.0)))),

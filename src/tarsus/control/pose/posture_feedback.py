@@ -30,7 +30,9 @@ _RESTS, _MOVES = (0.01, 0.06), (0.05, 0.18)
 # How fast the height to keep changes [m/s], and how much of the body height it may be lower.
 _RAISING, _LOWERING, _MOST_LOWER = 0.08, 0.2, 0.25
 
+# Least and greatest heights of all feet; those at footholds one after the other [m].
 _Ranges: TypeAlias = tuple[Sequence[float], Sequence[float]]
+_Rises: TypeAlias = Sequence[_Ranges]
 
 
 class BodyMove(NamedTuple):
@@ -103,14 +105,7 @@ class PostureFeedback:
         self._rests = False
 
     def fit_to_reach(
-        self,
-        rises: Sequence[_Ranges],
-        raises: tuple[float, float],
-        dt: float,
-        *,
-        reach: _Ranges,
-        height: float,
-        share: float,
+        self, rises: _Rises, raises: tuple[float, float], dt: float, *, reach: _Ranges, height: float, share: float
     ) -> None:
         """Change the height to keep towards the one at which all legs reach the plane of the feet.
 

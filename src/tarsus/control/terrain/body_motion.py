@@ -227,11 +227,11 @@ class BodyMotion:
         """Change the height of the body to one at which all legs reach the ground."""
         contacts, reach, plane = self.contacts, self.reach, self.ground.plane
         hanging = [leg for leg, on in enumerate(down) if on and contacts.seeks(leg) and reach.hangs(leg, over[leg])]
-        stands = all(contacts.stands(leg) for leg, on in enumerate(down) if on)
+        looks_ahead = self.ground.given and all(contacts.stands(leg) for leg, on in enumerate(down) if on)
         now = reach.rises(plane, over, bears=bears, hanging=hanging)
         lower = 0.0 if self.ground.given else _LOWER * self.roughness.value
-        here, ahead = ([rise - lower for rise in now], now), self.ground.rises_ahead(reach) if stands else None
-        rises = [ahead, here] if ahead else [here]
+        here = [rise - lower for rise in now], now
+        rises = [self.ground.rises_ahead(reach), here] if looks_ahead else [here]
         height, swing_height = state.posture.value[[2, SWING_HEIGHT]].tolist()
         level = plane.levelled(self.tilt)
         highest = reach.highest_stand(swing_height, hangs=bool(hanging))

@@ -243,16 +243,14 @@ class GroundMap:
         way = elevation + float(on_way(self.expected, start, foothold).max())
         return under._replace(way=way, steep=is_steep(self.expected, start, foothold), clears=False)
 
-    def rises_ahead(self, reach: Reach) -> tuple[list[float], list[float]] | None:
-        """Return least and greatest height of the ground at each leg's next footholds, over the plane's height [m].
+    def rises_ahead(self, reach: Reach) -> tuple[list[float], list[float]]:
+        """Return least and greatest height of the known ground at each leg's next footholds, over the plane's [m].
 
         Parameters
         ----------
         reach : Reach
             Rest footholds, and strokes about them.
         """
-        if not self.given:
-            return None
         ahead = self.expected(reach.rest + _NEXT[:, None] * reach.strokes) - self.plane.height
         return ahead.min(axis=0).tolist(), ahead.max(axis=0).tolist()
 
