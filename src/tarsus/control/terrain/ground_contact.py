@@ -181,7 +181,7 @@ def _trying_again(state: GaitState, leg: int, missing: MissingGround, body: Body
     foot += body.tracking_error(state, leg) / turn
     back = missing.stopped(leg, foot, goal, complex(reach.bows[leg]))
     place = missing.places[leg]
-    highest = state.elevation + reach.highest_on_way(leg, place, missing.obstacles.ends(leg, place))[0]
+    highest = state.elevation + reach.highest_on_way(leg, place, missing.obstacles.goals.get(leg, place))[0]
     top = min(height + reach.scale * _HIGHER, max(highest, height))
     slide = reach.scale * _DRAWS_BACK * turn * back / max(abs(back), 1e-9)
     return after._replace(felt=_with(after.felt, leg, speed=0.0, acceleration=0.0, top=top, slide=slide))

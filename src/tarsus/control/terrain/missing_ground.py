@@ -146,9 +146,9 @@ class MissingGround:
         (feet, stands, centre, height), rest = footing, footholds.rest.tolist()
         if not searches:
             self._edge.twist = self.twist
-        beside = self.obstacles.go_on(lambda leg: not self.steps_back(leg, feet[leg]))
-        self.places |= beside
-        searching = {search.leg for search in searches} | beside.keys()
+        goes_on = [leg for leg in self.obstacles.goals if not self.steps_back(leg, feet[leg])]
+        self.places |= {leg: self.obstacles.goals.pop(leg) for leg in goes_on}
+        searching = {search.leg for search in searches} | set(goes_on)
         # Past an obstacle, a foot looks for the ground like any other.
         past = {leg for leg in self.obstacles.stops if not self.steps_back(leg, feet[leg])}
         for leg in [leg for leg in self.places if leg not in searching or leg in past]:
@@ -283,7 +283,7 @@ class MissingGround:
         self._leaves = velocity * (bool(self.stranded) and leads_towards(-velocity, self._edge.way or self._edge.left))
         if self.refuses:
             return grant.at_most(0.0, self._cause.limitation(LimitationKind.GROUND))
-        for leg in self.obstacles.led_away(lambda way: leads_towards(velocity, way)):
+        for leg in self.obstacles.led_away(velocity):
             self.drop(leg)
         if any(request.twist) and not self.places and self._edge.way:
             self._edge.leave(self.obstacles.found)

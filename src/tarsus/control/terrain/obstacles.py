@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+
+from tarsus.control.limiter.protocol import leads_towards
 
 __all__ = ["Obstacles"]
 
@@ -27,13 +28,14 @@ class Obstacles:
         The direction of the obstacle that no foot got past; 0 without one.
     stops : dict of int to (int, complex, complex)
         By leg, how often its foot was stopped, where first, and where it was to go, in the heading frame [m].
+    goals : dict of int to complex
+        By leg, where its foot goes on to from beside its way, in the heading frame [m].
     """
 
     def __init__(self, scale: float) -> None:
         self.found, self._scale = 0j, scale
         self.stops = dict[int, tuple[int, complex, complex]]()
-        # Where feet go on to from beside their ways.
-        self._goals = dict[int, complex]()
+        self.goals = dict[int, complex]()
 
     def tries(self, leg: int) -> bool:
         """Return whether a foot is to get past an obstacle, and is not put down before it."""
@@ -64,7 +66,7 @@ class Obstacles:
         self.stops[leg], way = (stops + 1, start, goal), goal - start
         way /= max(abs(way), _NO_WAY)
         start -= self._scale * _BEFORE * way
-        self._goals.pop(leg, None)
+        self.goals.pop(leg, None)
         if stops >= _STOPS + _SIDES:
             self.found = way
             return start, start
@@ -75,22 +77,15 @@ class Obstacles:
             # Towards the body first: there the leg is steeper.
             inwards = -(start * way.conjugate()).imag * (-1) ** (stops - _STOPS)
             side = 1j * way * math.copysign(self._scale * _BESIDE, inwards)
-        self._goals[leg] = goal + side
+        self.goals[leg] = goal + side
         return start, start + side
 
-    def ends(self, leg: int, place: complex) -> complex:
-        """Return where a foot goes on to from this place [m]; the same place if it stays there."""
-        return self._goals.get(leg, place)
-
-    def go_on(self, arrived: Callable[[int], bool]) -> dict[int, complex]:
-        """Return where feet go on to that have arrived beside their ways [m]."""
-        return {leg: self._goals.pop(leg) for leg in [leg for leg in self._goals if arrived(leg)]}
-
-    def led_away(self, leads: Callable[[complex], bool]) -> list[int]:
+    def led_away(self, velocity: complex) -> list[int]:
         """Return the legs with feet that try to get past an obstacle, where a twist leads back on their way."""
-        return [leg for leg, (_, start, goal) in self.stops.items() if self.tries(leg) and leads(start - goal)]
+        back = {leg: start - goal for leg, (_, start, goal) in self.stops.items() if self.tries(leg)}
+        return [leg for leg, way in back.items() if leads_towards(velocity, way)]
 
     def forget(self, leg: int) -> None:
         """Forget that a foot was stopped."""
         self.stops.pop(leg, None)
-        self._goals.pop(leg, None)
+        self.goals.pop(leg, None)
