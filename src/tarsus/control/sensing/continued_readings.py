@@ -119,11 +119,9 @@ class ContinuedReadings:
             return valid
         held = np.broadcast_to(ages, np.shape(self._commands[-1][1])) - usual
         moved, predicted = self._moved(held, lag), np.flatnonzero(held[:, 0] > _SAME * dt)
-        angles = [
-            leg and (leg[0] + coxa, leg[1] + femur, leg[2] + tibia)
-            for leg, (coxa, femur, tibia) in zip(valid.joint_angles or (), moved.tolist(), strict=True)
-        ]
-        return valid._replace(joint_angles=tuple(angles), joint_age=usual, predicted=frozenset(predicted.tolist()))
+        legs = zip(valid.joint_angles or (), moved.tolist(), strict=True)
+        angles = tuple(leg and (leg[0] + by[0], leg[1] + by[1], leg[2] + by[2]) for leg, by in legs)
+        return valid._replace(joint_angles=angles, joint_age=usual, predicted=frozenset(predicted.tolist()))
 
     def _moved(self, held: Float[np.ndarray, "legs 3"], lag: float) -> Float[np.ndarray, "legs 3"]:
         """Return what joints have been commanded to move since, a lag before [rad]."""

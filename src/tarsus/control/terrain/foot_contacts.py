@@ -188,14 +188,13 @@ class FootContacts:
 
     def _balance(self, footing: Footing, tilt: RollPitch, dt: float) -> None:
         """Find a switch that stays open: a robot that does not tip stands on a foot that it does not feel."""
-        places, down, centre, _ = footing
-        missing = [leg for leg, on in enumerate(down) if on and not self.standing[leg]]
-        standing = [places[leg] for leg, on in enumerate(down) if on and leg not in missing]
-        if not missing or holds(standing, centre):
+        missing = [leg for leg, on in enumerate(footing.down) if on and not self.standing[leg]]
+        standing = [footing.places[leg] for leg, on in enumerate(footing.down) if on and leg not in missing]
+        if not missing or holds(standing, footing.centre):
             self._unheld = 0.0
         elif len(standing) >= _FEWEST:
             longest = max(missing, key=self._without.__getitem__)
-            if self._unheld <= 0.0 or abs(sunk_at(places[longest], tilt, self._tilt)) > self._scale * _TIPS:
+            if self._unheld <= 0.0 or abs(sunk_at(footing.places[longest], tilt, self._tilt)) > self._scale * _TIPS:
                 self._unheld, self._tilt = 0.0, tilt
             self._unheld += dt
             if self._unheld > _UNHELD and self._without[longest] > _NEVER:

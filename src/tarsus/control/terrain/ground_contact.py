@@ -118,9 +118,8 @@ def _landed(state: GaitState, leg: int, timing: StepTiming, pace: float) -> Gait
     """Return the state with a foot put down where it is; what speed it has, it loses soon."""
     rate = timing.frequency / (1 - timing.gait.duty_factor - float(state.lift_delay[leg]))
     slide = complex(state.swing_velocity[leg]) * rate * pace
-    foothold, velocity, acceleration = (
-        part.copy() for part in (state.foothold, state.swing_velocity, state.swing_acceleration)
-    )
+    velocity, acceleration = state.swing_velocity.copy(), state.swing_acceleration.copy()
+    foothold = state.foothold.copy()
     foothold[leg], velocity[leg], acceleration[leg] = state.foot[leg], 0j, 0j
     felt = _with(state.felt, leg, slide=slide)
     state = state._replace(foothold=foothold, swing_velocity=velocity, swing_acceleration=acceleration, felt=felt)
