@@ -28,13 +28,13 @@ _IDLE_ERROR, _IDLE = 0.07, 0.3
 # Speed towards its command of a joint whose servo works, whatever torque it gives at that [rad/s].
 _MOVES = 1.0
 # How long a joint has to be off by this error until it has failed, and the time in which half of it is forgotten [s]. A
-# greater error counts for more, by its square and up to these factors: where the torque is not measured, of an idle
-# servo, and of one that pulls, as that of a leg does that is caught.
+# greater error counts for more, by its square and up to these factors: where the torque is not measured, and of an idle
+# servo. One that pulls works: its leg is caught, or lies on an edge.
 _FAILED_AFTER, _MEMORY = 1.5, 2.0
-_MOST_WEIGHT, _MOST_IDLE, _MOST_PULLING = 6.0, 15.0, 1.0
+_MOST_WEIGHT, _MOST_IDLE = 6.0, 15.0
 # Index of the femur joint.
 _FEMUR = 1
-# Share that counts where the foot touches the ground, which may stall the servo, unless its torque tells that it idles.
+# Share that counts where the foot touches the ground, which may stall the servo, and no torque is measured.
 _STALLED = 0.2
 # The same of a coxa or tibia where neither torque nor touch is known.
 _MAY_BE_STALLED = 0.5
@@ -79,8 +79,8 @@ class ServoMonitor:
 
     A servo that is loaded gives way, and one that is slow lags behind. One that is dead, limp or stuck is off by more
     than its stall torque explains, for longer than any lag; the more it is off, the sooner it is found. The ground may
-    stall a servo that works. Its torque tells, where that is measured: such a servo pulls. Otherwise, contact does: it
-    presses its foot on the ground.
+    stall a servo that works. Its torque tells, where that is measured: such a servo pulls, and is found only if its
+    joint does not move with its commands. Otherwise, contact does: it presses its foot on the ground.
 
     Parameters
     ----------
@@ -143,7 +143,7 @@ class ServoMonitor:
             assert self._evidence is not None  # what it was found by
             self._found.discard(leg)
             self._evidence[:, leg] = 0.0
-        stuck = self._stuck(measured, commanded, dt)
+        stuck = self._stuck(measured, commanded, valid, dt)
         if self._evidence is not None:
             self._evidence *= 0.5 ** (dt / _MEMORY)
         # No joint is further from all recent commands than from the last one.
@@ -161,9 +161,7 @@ class ServoMonitor:
             touches = leg in touching or (False if valid.contacts and valid.contacts[leg] is not None else None)
             if not math.isnan(torque):
                 moves = (now - before) * math.copysign(1.0, asked - now) > _MOVES * dt
-                pulls = (_STALLED if touches else 1.0) * _over(error, _ERROR, most=_MOST_PULLING)
-                idles = torque < _IDLE and not moves
-                counts = dt * (_over(error, _IDLE_ERROR, most=_MOST_IDLE) if idles else pulls)
+                counts = dt * _over(error, _IDLE_ERROR, most=_MOST_IDLE) * (torque < _IDLE and not moves)
             elif joint == _FEMUR:
                 up = bool(over[leg, joint] > 0.0)
                 counts, self._raised[leg] = _of_femur(raised.get(leg), now, error, dt, up=up, touches=touches)
@@ -183,7 +181,11 @@ class ServoMonitor:
         return abs(of_leg[joint]) / float(self._stall_torque[leg, joint]) if of_leg else math.nan
 
     def _stuck(
-        self, measured: Float[np.ndarray, "legs 3"], commanded: Float[np.ndarray, "legs 3"], dt: float
+        self,
+        measured: Float[np.ndarray, "legs 3"],
+        commanded: Float[np.ndarray, "legs 3"],
+        valid: ValidReadings,
+        dt: float,
     ) -> Bool[np.ndarray, "legs 3"] | None:
         """Return which joints have not moved with their commands, at the end of a time in which any is so."""
         self._compared.append((measured, commanded))
@@ -191,9 +193,13 @@ class ServoMonitor:
         if self._time < _WITHIN:
             return None
         moved, wanted = np.ptp(self._compared, axis=0)
-        self._compared, self._time = [], 0.0
         with np.errstate(invalid="ignore"):
             stuck: np.ndarray = (wanted > _COMMANDED) & (moved < _SHARE * wanted)
+            pressed = np.flatnonzero((stuck & (measured > commanded))[:, _FEMUR]).tolist()
+        # The ground may stall a femur that presses its foot down: what it does once that has lifted tells.
+        if any(leg in self._touched and self._torque(valid, leg, _FEMUR) > _IDLE for leg in pressed):
+            return None
+        self._compared, self._time = [], 0.0
         return stuck if stuck.any() else None
 
 
