@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
-from typing import NamedTuple
 
 import numpy as np
 
@@ -37,18 +36,6 @@ _LEAST_FRACTION = 0.02
 _LEAST_MOVE = 1e-3
 # Differences below this are rounding.
 _SAME = 1e-9
-
-
-class _Path(NamedTuple):
-    """The path from the present stance to the commanded one, and how much of it is feasible."""
-
-    start: StanceTarget
-    end: StanceTarget
-    fraction: float = 1.0
-    cause: Cause | None = None
-
-    def at(self, fraction: float) -> StanceTarget:
-        return self.start.towards(self.end, fraction)
 
 
 class TransitionPlanner:
@@ -124,56 +111,59 @@ class TransitionPlanner:
         robot = self._robot
         end = present if stay and present else target_stance(robot, parameters, present)
         yield
-        path = _Path(present or end, end)
-        if path.start is not end:
-            fraction, cause = yield from reachable_fraction(robot, path.start, end)
-            if cause is not None and fraction == 0:
+        start, reachable = present or end, 1.0
+        cause: Cause | None = None
+        if start is not end:
+            reachable, cause = yield from reachable_fraction(robot, start, end)
+            if cause is not None and reachable == 0:
                 return cause
-            path = path._replace(fraction=fraction, cause=cause)
             yield
-        fraction = first_increment(robot, path.start, end, path.fraction)
-        if np.abs(end.rest - path.start.rest).max() > _SAME:
+        fraction = first_increment(robot, start, end, reachable)
+        if np.abs(end.rest - start.rest).max() > _SAME:
             yield
-        limits = yield from self._limits(parameters, path.at(fraction))
-        if not (limits.feasible or limits.balanced or path.start is end or parameters.gait.body_shift):
+        goal = start.towards(end, fraction)
+        limits = yield from self._limits(parameters, goal)
+        if not (limits.feasible or limits.balanced or start is end or parameters.gait.body_shift):
             sets = support_sets(parameters.gait, parameters.excluded)
             check = StabilityCheck(robot, sets, parameters.excluded)
-            fraction = yield from balanced_fraction(check, path.start, end, fraction)
-            path = path._replace(fraction=fraction, cause=TIPPING)
+            reachable = fraction = yield from balanced_fraction(check, start, end, fraction)
             if fraction == 0:
                 return TIPPING
-            limits = yield from self._limits(parameters, path.at(fraction))
+            cause, goal = TIPPING, start.towards(end, fraction)
+            limits = yield from self._limits(parameters, goal)
         first: Cause | None = None
-        while isinstance(found := (yield from self._increment(parameters, path, fraction, limits)), Cause):
+        while isinstance(found := (yield from self._increment(parameters, start, goal, limits)), Cause):
             fraction, first = fraction / 2, first or found
-            if fraction < _LEAST_FRACTION or path.start is end:
+            if fraction < _LEAST_FRACTION or start is end:
                 return first
             yield
-            limits = yield from self._limits(parameters, path.at(fraction))
-        shortfalls = () if end is present else self._shortfalls(parameters, path)
+            goal = start.towards(end, fraction)
+            limits = yield from self._limits(parameters, goal)
+        shortfalls: tuple[Limitation, ...] = ()
+        if end is not present:
+            shortfalls = self._shortfalls(parameters, end, start.towards(end, reachable), cause or UNREACHABLE)
         return replace(
             found,
-            complete=fraction == path.fraction and bool((found.rest == path.at(fraction).rest).all()),
+            complete=fraction == reachable and bool((found.rest == goal.rest).all()),
             keeps_posture=end is present,
             limitations=(*shortfalls, *_timing_limitations(parameters, found.cycle_timing)),
         )
 
     def _increment(
-        self, parameters: WalkParameters, path: _Path, fraction: float, limits: VelocityLimits
+        self, parameters: WalkParameters, start: StanceTarget, goal: StanceTarget, limits: VelocityLimits
     ) -> Incremental[StanceTransition | Cause]:
-        """Find a way to a fraction of a path, with its limits there; or else one on which only the body moves."""
-        goal = path.at(fraction)
+        """Find a way to a stance, with its limits there; or else one on which only the body moves."""
         if not limits.feasible:
             return self._cause(parameters, goal, limits)
-        found = yield from self._way(parameters, path.start, goal, limits)
-        moves = np.abs(goal.posture - path.start.posture).max() > _LEAST_MOVE
-        if isinstance(found, Cause) and moves and np.abs(goal.rest - path.start.rest).max() > _SAME:
+        found = yield from self._way(parameters, start, goal, limits)
+        moves = np.abs(goal.posture - start.posture).max() > _LEAST_MOVE
+        if isinstance(found, Cause) and moves and np.abs(goal.rest - start.rest).max() > _SAME:
             # At the end of their reach, feet can step only once the body is back over them.
-            goal = goal._replace(rest=path.start.rest)
+            goal = goal._replace(rest=start.rest)
             yield
             limits = yield from self._limits(parameters, goal)
             if limits.feasible:
-                found = yield from self._way(parameters, path.start, goal, limits)
+                found = yield from self._way(parameters, start, goal, limits)
         return found
 
     def _way(
@@ -230,13 +220,14 @@ class TransitionPlanner:
             return Cause("end of the leg's reach as the body sways", self._robot.leg_names[limits.limiting_leg])
         return reach_cause(self._robot, stance.stand)
 
-    def _shortfalls(self, parameters: WalkParameters, path: _Path) -> tuple[Limitation, ...]:
-        """Return what of the commanded stance is not feasible."""
-        reached, geometry = path.at(path.fraction), self._robot.geometry
-        mount = geometry.mount_x + 1j * geometry.mount_y
-        missing = float((np.abs(path.end.rest - mount) - np.abs(reached.rest - mount)).mean())
+    def _shortfalls(
+        self, parameters: WalkParameters, end: StanceTarget, reached: StanceTarget, cause: Cause
+    ) -> tuple[Limitation, ...]:
+        """Return what of the commanded stance, at the end, is not feasible."""
+        mount = self._robot.geometry.mount_x + 1j * self._robot.geometry.mount_y
+        missing = float((np.abs(end.rest - mount) - np.abs(reached.rest - mount)).mean())
         width = parameters.stance_width - missing
-        return stance_limitations(parameters, reached.posture, path.cause or UNREACHABLE, stance_width=width)
+        return stance_limitations(parameters, reached.posture, cause, stance_width=width)
 
 
 def _timing_limitations(parameters: WalkParameters, timing: CycleTiming) -> tuple[Limitation, ...]:
