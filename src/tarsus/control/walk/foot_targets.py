@@ -5,15 +5,15 @@ from __future__ import annotations
 import cmath
 import math
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from tarsus.control.command import Command
+from tarsus.control.filters import CriticallyDamped
 from tarsus.control.limitation import Cause, Limitation, LimitationKind
-from tarsus.control.walk.foot_target_motion import GREATEST_SPEED, FootTargetMotion, begin_foot_target
 from tarsus.control.walk.state import GaitState
-from tarsus.gait.stance.stance_geometry import SWING_HEIGHT, StanceGeometry, joint_margin, rotation_rows, sway_extremes
+from tarsus.gait.stance.stance_geometry import SWING_HEIGHT, joint_margin, stance_geometry_of, sway_extremes
 from tarsus.robot.robot import Robot, require_leg_number
 
 if TYPE_CHECKING:
@@ -21,9 +21,11 @@ if TYPE_CHECKING:
 
 __all__ = ["FootTargets", "excluded_legs"]
 
+# Greatest speed with which a foot follows its target [m/s], and the greatest bandwidth [rad/s].
+_GREATEST_SPEED, _BANDWIDTH = 0.12, 5.0
 # Fractions of a path that are tested for reach.
 _TRIED = np.arange(17) / 16
-_FASTEST = f"feet out of the gait move at {1e3 * GREATEST_SPEED:.0f} mm/s at most"
+_FASTEST = f"feet out of the gait move at {1e3 * _GREATEST_SPEED:.0f} mm/s at most"
 _BELOW_GROUND = "the point is below the ground; the foot stays on it"
 
 
@@ -40,13 +42,55 @@ def excluded_legs(command: Command, before: tuple[int, ...], legs: int) -> tuple
     InputError
         If the command names a leg that the robot does not have.
     """
-    if not (command.foot_targets or command.foot_velocities):
-        return before
     excluded = set(before)
-    for leg, point in [*(command.foot_targets or {}).items(), *(command.foot_velocities or {}).items()]:
+    for leg, point in {**(command.foot_targets or {}), **(command.foot_velocities or {})}.items():
         require_leg_number("foot_targets", leg, legs)
         (excluded.discard if point is None else excluded.add)(leg)
     return tuple(sorted(excluded))
+
+
+class _Motion(NamedTuple):
+    """State of a foot that is taken out of the gait.
+
+    Attributes
+    ----------
+    position : CriticallyDamped
+        Its position in the heading frame ``(3,)`` [m].
+    target : array, shape (3,)
+        Its target in the heading frame [m].
+    """
+
+    position: CriticallyDamped
+    target: Float[np.ndarray, "3"]
+
+    @classmethod
+    def beginning(cls, state: GaitState, leg: int) -> _Motion:
+        """Return the motion of a foot that leaves the gait, from its position and velocity in stance.
+
+        Parameters
+        ----------
+        state : GaitState
+            The state of the walk.
+        leg : int
+            Index of the leg; its foot is in stance.
+        """
+        in_heading = state.in_heading(complex(state.foot[leg]))
+        vx, vy, wz = state.twist.value.tolist()
+        # A stance foot is at rest in G.
+        relative = -(complex(vx, vy) + 1j * wz * in_heading)
+        here = np.array([in_heading.real, in_heading.imag, float(state.ground_height[leg]) - state.elevation])
+        return cls(CriticallyDamped(here, np.array([relative.real, relative.imag, -state.climb])), here)
+
+    def step(self, dt: float) -> _Motion:
+        """Return the motion after a time [s]."""
+        distance = float(np.abs(self.target - self.position.value).max())
+        # A critically damped filter with bandwidth 2 v / distance, renewed every tick, reaches speed v and keeps it.
+        bandwidth = min(_BANDWIDTH, 2 * _GREATEST_SPEED / max(distance, 1e-9))
+        return self._replace(position=self.position.step(self.target, dt, bandwidth=bandwidth))
+
+    def stopped(self) -> _Motion:
+        """Return the motion with a target at which it can stop."""
+        return self._replace(target=self.position.value + 2 * self.position.rate / _BANDWIDTH)
 
 
 class FootTargets:
@@ -65,7 +109,7 @@ class FootTargets:
 
     def __init__(self, robot: Robot) -> None:
         self._robot = robot
-        self._motions: dict[int, FootTargetMotion] = {}
+        self._motions: dict[int, _Motion] = {}
         self._excluded: tuple[int, ...] = ()
         self._points: dict[int, Sequence[float]] = {}
         self.limitations: list[Limitation] = []
@@ -86,7 +130,7 @@ class FootTargets:
     def set_legs(self, excluded: tuple[int, ...], state: GaitState) -> None:
         """Set the legs that are taken out of the gait; a leg that returns stays in the air until its next step."""
         stopped = {leg: motion.stopped() for leg, motion in self._motions.items() if leg not in excluded}
-        self._motions = stopped | {leg: self._motions.get(leg) or begin_foot_target(state, leg) for leg in excluded}
+        self._motions = stopped | {leg: self._motions.get(leg) or _Motion.beginning(state, leg) for leg in excluded}
         self._excluded, self.limitations = excluded, []
 
     def set_targets(
@@ -115,7 +159,7 @@ class FootTargets:
             start = motion.position.value
             if leg in velocities:
                 velocity = np.array(velocities[leg])
-                share = min(GREATEST_SPEED / max(float(np.abs(velocity).max()), 1e-9), 1.0)
+                share = min(_GREATEST_SPEED / max(float(np.abs(velocity).max()), 1e-9), 1.0)
                 if share < 1:
                     self._note(leg, _FASTEST, asked=1.0, granted=share)
                 end = motion.target + share * velocity * dt
@@ -138,12 +182,10 @@ class FootTargets:
 
     def _reachable(self, leg: int, end: Float[np.ndarray, "3"], postures: list[Float[np.ndarray, "7"]]) -> float:
         """Return the fraction of a straight path to a point that a foot can follow in all of some postures."""
-        geometry, start, rows = self._robot.geometry, self._motions[leg].position.value, np.array(postures)
-        rotation = np.array([rotation_rows(*row) for row in rows[:, 3:SWING_HEIGHT].tolist()])[:, None, None]
-        rest = np.zeros(self._robot.legs)
-        stance = StanceGeometry(rest.astype(complex), rotation, rows[:, :3].T[..., None, None], 0.0)
+        geometry, start, rest = self._robot.geometry, self._motions[leg].position.value, np.zeros(self._robot.legs)
         points = (start + _TRIED[:, None] * (end - start)).T[..., None] + rest
-        margins = joint_margin(geometry, stance.solve(geometry, *points))[..., leg]
+        stances = [stance_geometry_of(posture, rest.astype(complex)) for posture in postures]
+        margins = np.array([joint_margin(geometry, stance.solve(geometry, *points))[:, leg] for stance in stances])
         # A foot that stands lower or farther out than its leg should reach may come back.
         works = (margins >= np.minimum(margins[:, :1], 0.0)).all(axis=0)
         reached = np.logical_and.accumulate(works) & (margins >= 0.0).all(axis=0)
