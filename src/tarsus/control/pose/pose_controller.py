@@ -42,14 +42,14 @@ class PoseController:
         The target posture.
     target : array, shape (13,)
         The target posture and the sway's amplitudes; the same array object until either changes.
-    shift : array, shape (14,), or None
-        Target of the body shift's coefficients [m]; None before the first gait with one.
+    shift : array, shape (14,)
+        Target of the body shift's coefficients [m].
     """
 
     def __init__(self, posture: Float[np.ndarray, "7"]) -> None:
         self.posture = posture
         self.target = np.append(posture, np.zeros(SWING_HEIGHT))
-        self.shift: Float[np.ndarray, "14"] | None = None
+        self.shift: Float[np.ndarray, "14"] = NO_SHIFT.value
         self._sways = False
 
     def set_shift(self, coefficients: Complex[np.ndarray, "7"] | None, value: Float[np.ndarray, "14"]) -> bool:
@@ -62,12 +62,11 @@ class PoseController:
         value : array, shape (14,)
             Its present coefficients, real and imaginary parts [m].
         """
-        if coefficients is not None:
-            if self.shift is None or self.shift.base is not coefficients:
-                self.shift = coefficients.view(float)
-        elif self.shift is not None:
+        if coefficients is None:
             self.shift = NO_SHIFT.value
-        return self.shift is None or float(np.abs(value - self.shift).sum()) <= _SHIFT_TOLERANCE
+        elif self.shift.base is not coefficients:
+            self.shift = coefficients.view(float)
+        return value is self.shift or float(np.abs(value - self.shift).sum()) <= _SHIFT_TOLERANCE
 
     def set_posture(self, posture: Float[np.ndarray, "7"]) -> None:
         """Set the target posture."""

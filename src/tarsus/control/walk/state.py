@@ -198,8 +198,8 @@ class StepInputs(NamedTuple):
         Whether the body sways.
     felt : FeltInputs or None
         What is felt of the ground; None for a walk without readings.
-    shift : array, shape (14,), or None
-        Target of the body shift's coefficients [m]; None where the state has none.
+    shift : array, shape (14,)
+        Target of the body shift's coefficients [m].
     """
 
     gait: Gait
@@ -218,7 +218,7 @@ class StepInputs(NamedTuple):
     beats: int = 2
     swaying: bool = True
     felt: FeltInputs | None = None
-    shift: Float[np.ndarray, "14"] | None = None
+    shift: Float[np.ndarray, "14"] = NO_SHIFT.value
 
 
 def integrate_twist(origin: complex, yaw: float, travel: Sequence[float]) -> tuple[complex, float]:

@@ -8,7 +8,6 @@ from typing import NamedTuple
 
 import numpy as np
 
-from tarsus.control.pose.pose_controller import NO_SHIFT
 from tarsus.control.walk.state import PHASE_TOLERANCE, GaitState
 from tarsus.gait.gait import Gait
 
@@ -91,7 +90,7 @@ class StepTiming(NamedTuple):
             All feet are down; the leg that lifts first.
         """
         offsets, duty_factor = np.asarray(self.gait.offsets), self.gait.duty_factor
-        shifted = state.shift is not NO_SHIFT and bool(state.shift.value.any())
+        shifted = any(state.shift.value.tolist())
         clock = state.clock if shifted else float(offsets[leg]) + duty_factor
         return state._replace(clock=clock, step_number=np.ceil(clock - offsets - duty_factor - PHASE_TOLERANCE))
 

@@ -41,11 +41,10 @@ def advance(state: GaitState, inputs: StepInputs, dt: float) -> GaitState:
         The gait state; what is constant for the time; the time [s].
     """
     twist, travel = state.twist.step_with_integral(inputs.twist, dt, bandwidth=inputs.bandwidth)
-    offset, shift = state.admittance_offset, state.shift
     # The body pose is followed while the walk waits, too.
     posture = state.posture.settling_step(inputs.posture, dt, bandwidth=inputs.posture_bandwidth)
-    offset = offset.settling_step(inputs.admittance_offset, dt, bandwidth=_ADMITTANCE_BANDWIDTH)
-    shift = shift if inputs.shift is None else shift.settling_step(inputs.shift, dt, bandwidth=_SHIFT_BANDWIDTH)
+    offset = state.admittance_offset.settling_step(inputs.admittance_offset, dt, bandwidth=_ADMITTANCE_BANDWIDTH)
+    shift = state.shift.settling_step(inputs.shift, dt, bandwidth=_SHIFT_BANDWIDTH)
     if inputs.felt is not None:
         dt, travel = inputs.felt.pace * dt, [inputs.felt.pace * way for way in travel]
     origin, yaw = integrate_twist(state.origin, state.yaw, travel)
