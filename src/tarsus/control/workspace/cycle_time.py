@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import partial
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -26,6 +27,7 @@ _LEAST_SIZE, _CYCLE_TIME_MARGIN = 0.25, 1.15
 # Half of all headings and one direction of turning: a steady cycle in the opposite one is the same in reverse.
 _STRAIGHT = 8
 _TWISTS = np.array([(np.cos(a), np.sin(a), 0.0) for a in np.arange(_STRAIGHT) * np.pi / _STRAIGHT] + [(0.0, 0.0, 1.0)])
+_STRAIGHT_AND_TURNING = slice(_STRAIGHT), slice(_STRAIGHT, None)
 _SAMPLES = 33
 # Rest footholds of two robots with one leg [m].
 _UNIT = np.array([[0.0, 0.0, 0.0], [1.0, 0.0, 0.0]])[:, None, None]
@@ -85,9 +87,8 @@ def cycle_timing(
             yield
         times.append(cycle.shortest_times(robot, stance, slice(begin, begin + size), joint_limits))
     # (sizes, twists): the shortest cycle for each size of each stroke.
-    shortest = np.empty((len(_SIZES), len(_TWISTS)))
-    shortest[0] = times[0][0]
-    shortest[1:] = np.concatenate(times)[1:].reshape(len(_SIZES) - 1, -1)
+    found = np.concatenate(times)
+    shortest = np.vstack([np.full(len(_TWISTS), found[0]), found[1:].reshape(-1, len(_TWISTS))])
     return _timing(np.maximum.accumulate(shortest, axis=0), stroke, cycle_time)
 
 
@@ -97,37 +98,27 @@ def _timing(
     """Return the timing from the shortest cycle for each size of each stroke."""
     # With less than a good fraction of the stroke, the robot would hardly advance.
     least = _CYCLE_TIME_MARGIN * max(float(np.interp(_LEAST_SIZE, _SIZES, column)) for column in shortest.T)
+    straight, turning = (partial(_longest, shortest[:, part], stroke[part]) for part in _STRAIGHT_AND_TURNING)
     if cycle_time is None:
         tried = least * _TRIED
-        straight = _sizes(shortest[:, :_STRAIGHT], tried)
         # Optimised for walking straight, the most frequent command.
-        far = np.minimum(
-            straight[:, 0] * stroke[0], _cap(straight, tried[:, None] / shortest[-1, :_STRAIGHT], stroke[:_STRAIGHT])
-        )
-        cycle_time = float(tried[int((far / tried).argmax())])
+        ahead = np.interp(tried, shortest[:, 0], _SIZES) * stroke[0]
+        cycle_time = float(tried[int((np.minimum(ahead, straight(tried)) / tried).argmax())])
     cycle_time = max(cycle_time, least)
-    sizes = _sizes(shortest, cycle_time)
-    spare = cycle_time / shortest[-1]
-    parts = (slice(_STRAIGHT), slice(_STRAIGHT, None))
-    return CycleTiming(cycle_time, *(float(_cap(sizes[part], spare[part], stroke[part])) for part in parts))
+    return CycleTiming(cycle_time, *(float(longest(np.array(cycle_time))) for longest in (straight, turning)))
 
 
-def _cap(
-    sizes: Float[np.ndarray, "*batch"], spare: Float[np.ndarray, "*batch"], stroke: Float[np.ndarray, "..."]
-) -> Float[np.ndarray, "..."]:
-    """Return the stroke ``(...)`` that is feasible in every direction in which the joints, not the legs, are the limit.
+def _longest(
+    shortest: Float[np.ndarray, "sizes n"], stroke: Float[np.ndarray, "n"], cycle_time: Float[np.ndarray, "*batch"]
+) -> Float[np.ndarray, "*batch"]:
+    """Return the stroke that is feasible in every direction in which the joints, not the legs, are the limit.
 
     If they are in none, it is the strokes of the legs times the ratio of the cycle time to the shortest one.
     """
+    sizes = np.stack([np.interp(cycle_time, column, _SIZES) for column in shortest.T], axis=-1)
     bound = np.where(sizes < 1, sizes * stroke, np.inf).min(-1)
-    return np.asarray(np.where(np.isfinite(bound), bound, (np.maximum(spare, 1.0) * stroke).max(-1)))
-
-
-def _sizes(
-    shortest: Float[np.ndarray, "legs n"], cycle_times: Float[np.ndarray, "*batch"] | float
-) -> Float[np.ndarray, "*batch n"]:
-    """Return the fraction of the longest stroke that cycle times allow, for each twist on the last axis."""
-    return np.stack([np.interp(cycle_times, column, _SIZES) for column in shortest.T], axis=-1)
+    spare = np.maximum(cycle_time[..., None] / shortest[-1], 1.0)
+    return np.asarray(np.where(np.isfinite(bound), bound, (spare * stroke).max(-1)))
 
 
 class _SteadyCycle:
