@@ -63,10 +63,8 @@ class TwistGrant(NamedTuple):
 
     def at_most(self, fraction: float, limitation: Limitation | None = None) -> TwistGrant:
         """Return the grant with a fraction no greater than another, and with a limitation to report, if any."""
-        if limitation is None and fraction >= self.fraction:
-            return self
         limitations = self.limitations if limitation is None else (*self.limitations, limitation)
-        return TwistGrant(min(self.fraction, fraction), self.target, limitations)
+        return self._replace(fraction=min(self.fraction, fraction), limitations=limitations)
 
     def scaled(self, twist: Sequence[float]) -> list[float]:
         """Return a twist times the fraction."""

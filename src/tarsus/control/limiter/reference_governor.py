@@ -48,7 +48,7 @@ class GovernorLimiter:
         if not stays or command != self._command or not all(map(is_, stance, self._stance)):
             self._command, self._stance, self._target = command, stance, self._governed(request, command)
             self._met = self._target.tolist() == command
-        return TwistGrant(grant.fraction, self._target, grant.limitations)
+        return grant._replace(target=self._target)
 
     def _governed(self, request: TwistRequest, command: list[float]) -> Float[np.ndarray, "3"]:
         """Return the twist to follow."""

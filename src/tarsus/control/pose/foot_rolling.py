@@ -95,10 +95,7 @@ class FootRolling:
             self.started, self._aim, self._filter = True, self._goal, CriticallyDamped.still(self._goal)
         if self._aim is not self._goal:
             aim = np.where(np.concatenate([down, down, np.zeros_like(down)]), self._aim, self._goal)
-            if np.array_equal(aim, self._goal):
-                self._aim = self._goal
-            elif not np.array_equal(aim, self._aim):
-                self._aim = aim
+            self._aim = self._goal if np.array_equal(aim, self._goal) else aim
         self._filter = self._filter.settling_step(self._aim, dt, bandwidth=_BANDWIDTH)
 
     def balls(self, posture: Float[np.ndarray, "_"]) -> list[tuple[float, float]]:

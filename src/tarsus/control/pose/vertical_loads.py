@@ -72,11 +72,9 @@ class VerticalLoads:
             measured = [force[2] if force and force[2] > 0.0 else 0.0 for force in valid.forces]
         else:
             measured = [self._weight / _FEWEST * on for on in bears]
-        if valid.joint_angles is None or None in valid.joint_angles:
-            known = valid.joint_angles or (None,) * len(feet)
-            measured = [load if of_leg else 0.0 for load, of_leg in zip(measured, known, strict=True)]
-        follows = min(_RATE * dt, 1.0)
-        self._loads = loads = [load + follows * (new - load) for load, new in zip(self._loads, measured, strict=True)]
+        follows, known = min(_RATE * dt, 1.0), valid.joint_angles or (None,) * len(feet)
+        legs = zip(self._loads, measured, known, strict=True)
+        self._loads = loads = [load + follows * ((new if of_leg else 0.0) - load) for load, new, of_leg in legs]
         total = sum(loads)
         if not total:
             return (0.0,) * len(feet)

@@ -101,11 +101,9 @@ def _lift(
         above = state.ground_height > POSITION_TOLERANCE if inputs.felt is None else ~np.array(inputs.felt.steps)
         lifts = lifts & (away | above)
     missed = due & ~lifts
-    start, offset = state.ground_height, state.admittance_offset
-    if offset.value.any():
-        # The admittance offset becomes the start of the swing.
-        start = start + offset.value
-        offset = offset._replace(value=np.where(lifts, 0.0, offset.value))
+    # The admittance offset becomes the start of the swing.
+    offset = state.admittance_offset
+    start, left = state.ground_height + offset.value, np.where(lifts, 0.0, offset.value)
     # One that has not stood since its last swing rises anew.
     felt = [foot._replace(top=math.nan) if on else foot for foot, on in zip(state.felt, lifts.tolist(), strict=False)]
     return state._replace(
@@ -115,7 +113,7 @@ def _lift(
         swing_phase=np.where(lifts, 0.0, state.swing_phase),
         start_height=np.where(lifts, start, state.start_height),
         ground_height=np.where(lifts, start if state.felt else 0.0, state.ground_height),
-        admittance_offset=offset,
+        admittance_offset=offset._replace(value=left),
         # Feet that lift off late swing shorter.
         lift_delay=np.where(due, np.clip(late, 0.0, _LATEST * (1 - inputs.gait.duty_factor)), state.lift_delay),
     )
@@ -148,7 +146,7 @@ def _swing(
         speed = complex(*state.twist.value[:2].tolist())
         # Feet that make up for lost way travel farther in a stance.
         stance *= 1 + (inputs.felt.drift * speed.conjugate()).real / max(abs(speed) ** 2, 1e-6)
-    for leg in [leg for leg, on in enumerate(state.down.tolist()) if not on]:
+    for leg in np.flatnonzero(~state.down).tolist():
         late, since = float(state.lift_delay[leg]), since_lift[leg]
         phase, target = float(phases[leg]), complex(targets[leg])
         reached = min(max((since - late) / (swing - late), 0.0), 1.0)
