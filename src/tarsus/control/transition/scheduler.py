@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 from collections.abc import Callable
+from contextlib import suppress
 from itertools import chain
 from typing import TypeAlias
 
@@ -47,14 +48,13 @@ class TransitionScheduler:
         self.planned: StanceTransition | None = None
         # Parameters that are not feasible at all, and what that limits.
         self._rejections: dict[WalkParameters, tuple[Limitation, ...]] = {}
-        self._asked = initial.parameters
-        self._job: Incremental[StanceTransition | Cause] | None = None
+        self._job: Incremental[None] | None = None
         # Parameters for which nothing is left to plan.
         self._done: WalkParameters | None = None
         # Whether the robot stands, or will stand, on the way from the current parameters to others.
         self._between = False
         # What the limitations of the current transition are about.
-        self._planned_for, self._stays = initial.parameters, False
+        self._planned_for = initial.parameters
         # What is limited besides by the current transition; kept until planning has come to a new result.
         self._shortfalls: tuple[Limitation, ...] = ()
 
@@ -105,47 +105,43 @@ class TransitionScheduler:
             Whether the last transition is over, so that another one may be planned.
         """
         if self._job is not None:
-            try:
-                next(self._job)
-            except StopIteration as stop:
-                self._finish_planning(stop.value)
-            except UnreachableError:
-                self._finish_planning(UNREACHABLE)
-            else:
+            if next(self._job, True) is None:
                 return
+            self._job = None
         if idle and self.planned is None and self.requested is not self._done:
             asked, stay = self._next_parameters()
             if self._is_open(asked, stay):
-                self._asked, self._stays, self._job = asked, stay, plan(asked, stay)
+                self._job = self._planning(plan, asked, stay)
             else:
                 self._finish_request()
 
-    def adopt(self, transition: StanceTransition) -> None:
-        """Take note that a transition begins."""
-        before = self.current
-        parameters = transition.parameters if transition.complete else before.parameters
-        limitations = transition.limitations
-        if transition.keeps_posture:
-            kept = (found for found in before.limitations if found.kind is not LimitationKind.CYCLE_TIME)
-            limitations = (*kept, *limitations)
-        else:
-            self._between = not transition.complete
-        self.current = dataclasses.replace(transition, parameters=parameters, limitations=limitations)
-        kept_for = dataclasses.replace(self._planned_for, cycle_time=transition.parameters.cycle_time)
-        self._planned_for = kept_for if transition.keeps_posture else transition.parameters
-        # What was rejected may be feasible from the new stance.
-        self.planned, self._rejections, self._done = None, {}, None
-
-    def _finish_planning(self, found: StanceTransition | Cause) -> None:
-        self._job = None
+    def _planning(self, plan: PlanTransition, asked: WalkParameters, stay: bool) -> Incremental[None]:
+        """Plan the transition to parameters, and take note of it or of why these are rejected."""
+        found: StanceTransition | Cause = UNREACHABLE
+        with suppress(UnreachableError):
+            found = yield from plan(asked, stay)
         if isinstance(found, StanceTransition):
             self.planned = found
         # What is no longer commanded by now is not rejected.
-        elif self._asked == self._next_parameters()[0]:
-            posture = None if self._stays else self.current.posture
-            rejected = rejection_limitations(self._asked, self.current.parameters, posture, found)
-            self._rejections[self._asked] = rejected
+        elif asked == self._next_parameters()[0]:
+            posture = None if stay else self.current.posture
+            self._rejections[asked] = rejection_limitations(asked, self.current.parameters, posture, found)
             self._shortfalls = tuple(chain.from_iterable(self._rejections.values()))
+
+    def adopt(self, transition: StanceTransition) -> None:
+        """Take note that a transition begins."""
+        planned_for, limitations = transition.parameters, transition.limitations
+        parameters = planned_for if transition.complete else self.current.parameters
+        if transition.keeps_posture:
+            kept = (found for found in self.current.limitations if found.kind is not LimitationKind.CYCLE_TIME)
+            limitations = (*kept, *limitations)
+            planned_for = dataclasses.replace(self._planned_for, cycle_time=planned_for.cycle_time)
+        else:
+            self._between = not transition.complete
+        self.current = dataclasses.replace(transition, parameters=parameters, limitations=limitations)
+        self._planned_for = planned_for
+        # What was rejected may be feasible from the new stance.
+        self.planned, self._rejections, self._done = None, {}, None
 
     def _finish_request(self) -> None:
         """Take note that all that is feasible of the commanded parameters is met."""
