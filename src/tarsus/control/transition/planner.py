@@ -79,22 +79,21 @@ class TransitionPlanner:
             stance_width=stance_width,
             cycle_time=cycle_time,
         )
-        found = complete(self.plan(parameters, None))
+        stance = StanceTarget.of(self._robot, parameters, setup.rest)
+        found = complete(self.plan(parameters, stance, stay=True))
         if isinstance(found, Cause):
             raise UnreachableError(f"the robot can't stand and step in this stance: {found.text()}")
         return found
 
     def plan(
-        self, parameters: WalkParameters, present: StanceTarget | None, *, stay: bool = False
+        self, parameters: WalkParameters, present: StanceTarget, *, stay: bool = False
     ) -> Incremental[StanceTransition | Cause]:
         """Plan the transition to commanded parameters.
 
         Parameters
         ----------
-        parameters : WalkParameters
-            What is commanded.
-        present : StanceTarget or None
-            The present stance; None to start in the commanded one.
+        parameters, present : WalkParameters, StanceTarget
+            What is commanded; the present stance.
         stay : bool
             Whether the robot keeps its present posture, and changes only how it steps.
 
@@ -109,39 +108,37 @@ class TransitionPlanner:
             If no leg reaches the ground at the body height.
         """
         robot = self._robot
-        end = present if stay and present else target_stance(robot, parameters, present)
+        end = present if stay else target_stance(robot, parameters, present)
         yield
-        start, reachable = present or end, 1.0
-        cause: Cause | None = None
-        if start is not end:
-            reachable, cause = yield from reachable_fraction(robot, start, end)
+        reachable, cause = 1.0, None
+        if present is not end:
+            reachable, cause = yield from reachable_fraction(robot, present, end)
             if cause is not None and reachable == 0:
                 return cause
             yield
-        fraction = first_increment(robot, start, end, reachable)
-        if np.abs(end.rest - start.rest).max() > _SAME:
+        fraction = first_increment(robot, present, end, reachable)
+        if np.abs(end.rest - present.rest).max() > _SAME:
             yield
-        goal = start.towards(end, fraction)
+        goal = present.towards(end, fraction)
         limits = yield from self._limits(parameters, goal)
-        if not (limits.feasible or limits.balanced or start is end or parameters.gait.body_shift):
+        if not (limits.feasible or limits.balanced or present is end or parameters.gait.body_shift):
             sets = support_sets(parameters.gait, parameters.excluded)
             check = StabilityCheck(robot, sets, parameters.excluded)
-            reachable = fraction = yield from balanced_fraction(check, start, end, fraction)
+            reachable = fraction = yield from balanced_fraction(check, present, end, fraction)
             if fraction == 0:
                 return TIPPING
-            cause, goal = TIPPING, start.towards(end, fraction)
+            cause, goal = TIPPING, present.towards(end, fraction)
             limits = yield from self._limits(parameters, goal)
         first: Cause | None = None
-        while isinstance(found := (yield from self._increment(parameters, start, goal, limits)), Cause):
+        while isinstance(found := (yield from self._increment(parameters, present, goal, limits)), Cause):
             fraction, first = fraction / 2, first or found
-            if fraction < _LEAST_FRACTION or start is end:
+            if fraction < _LEAST_FRACTION or present is end:
                 return first
             yield
-            goal = start.towards(end, fraction)
+            goal = present.towards(end, fraction)
             limits = yield from self._limits(parameters, goal)
-        shortfalls: tuple[Limitation, ...] = ()
-        if end is not present:
-            shortfalls = self._shortfalls(parameters, end, start.towards(end, reachable), cause or UNREACHABLE)
+        reached = present.towards(end, reachable)
+        shortfalls = () if end is present else self._shortfalls(parameters, end, reached, cause or UNREACHABLE)
         return replace(
             found,
             complete=fraction == reachable and bool((found.rest == goal.rest).all()),

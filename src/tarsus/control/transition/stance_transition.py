@@ -14,7 +14,7 @@ from tarsus.errors import UnreachableError
 from tarsus.gait.gait import Gait
 from tarsus.gait.stance.stance_geometry import SWING_HEIGHT, StanceGeometry, stance_geometry_of
 from tarsus.gait.stance.velocity_limits import VelocityLimits
-from tarsus.kinematics.stance import default_stance, stance_or_nan
+from tarsus.kinematics.stance import stance_or_nan
 from tarsus.robot.robot import Robot
 
 if TYPE_CHECKING:
@@ -84,6 +84,23 @@ class StanceTarget(NamedTuple):
     posture: Float[np.ndarray, "7"]
     rest: Complex[np.ndarray, "legs"]
 
+    @classmethod
+    def of(cls, robot: Robot, parameters: WalkParameters, feet: Float[np.ndarray, "legs 3"]) -> StanceTarget:
+        """Return the posture and the rest footholds that parameters ask for.
+
+        Parameters
+        ----------
+        robot, parameters : Robot, WalkParameters
+            A single robot; what is commanded.
+        feet : array, shape (legs, 3)
+            The default footholds at these heights, in B [m].
+        """
+        posture = np.array([*parameters.corrected_body, parameters.swing_height])
+        posture[2] += parameters.body_height
+        mount, rest = robot.geometry.mount_x + 1j * robot.geometry.mount_y, feet[:, 0] + 1j * feet[:, 1]
+        outward = (rest - mount) / np.maximum(np.abs(rest - mount), 1e-9)
+        return cls(posture, rest + parameters.stance_width * outward)
+
     def towards(self, other: StanceTarget, fraction: float) -> StanceTarget:
         """Return the stance at a fraction of the straight path to another: 0 for this one, 1 for the other."""
         return StanceTarget(*(here + fraction * (there - here) for here, there in zip(self, other, strict=True)))
@@ -94,36 +111,19 @@ class StanceTarget(NamedTuple):
         return stance_geometry_of(self.posture, self.rest)
 
 
-def target_stance(robot: Robot, parameters: WalkParameters, present: StanceTarget | None) -> StanceTarget:
+def target_stance(robot: Robot, parameters: WalkParameters, present: StanceTarget) -> StanceTarget:
     """Return posture and rest footholds; for a height without a foothold, of the nearest height that has them.
 
     Parameters
     ----------
-    robot, parameters : Robot, WalkParameters
-        A single robot; what is commanded.
-    present : StanceTarget or None
-        The present stance; None without one.
+    robot, parameters, present : Robot, WalkParameters, StanceTarget
+        A single robot; what is commanded; the present stance.
 
     Raises
     ------
     UnreachableError
         If no height between the present and the commanded one has footholds.
     """
-    body_height, swing_height, feet = _footholds(robot, parameters, present)
-    posture = np.array([*parameters.corrected_body, swing_height])
-    posture[2] += body_height
-    mount, rest = robot.geometry.mount_x + 1j * robot.geometry.mount_y, feet[:, 0] + 1j * feet[:, 1]
-    outward = (rest - mount) / np.maximum(np.abs(rest - mount), 1e-9)
-    return StanceTarget(posture, rest + parameters.stance_width * outward)
-
-
-def _footholds(
-    robot: Robot, parameters: WalkParameters, present: StanceTarget | None
-) -> tuple[float, float, Float[np.ndarray, "legs 3"]]:
-    """Return body height, swing height and the feet in B, shape (legs, 3)."""
-    if present is None:
-        stance = default_stance(robot, parameters.body_height, swing_height=parameters.swing_height)
-        return parameters.body_height, parameters.swing_height, stance
     body_height = float(present.posture[2]) - parameters.corrected_body[2]
     swing_height = float(present.posture[SWING_HEIGHT])
     for fractions in (np.ones(1), _FRACTIONS):
@@ -133,7 +133,9 @@ def _footholds(
         works = ~np.isnan(feet).any(axis=(-2, -1))
         if works.any():
             first = int(works.argmax())
-            return float(body_heights[first]), float(swing_heights[first]), feet[first]
+            body_height, swing_height = float(body_heights[first]), float(swing_heights[first])
+            nearest = replace(parameters, body_height=body_height, swing_height=swing_height)
+            return StanceTarget.of(robot, nearest, feet[first])
     raise UnreachableError(f"no leg reaches the ground at body height {parameters.body_height * 1000:.1f} mm")
 
 
