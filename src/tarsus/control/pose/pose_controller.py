@@ -50,7 +50,6 @@ class PoseController:
         self.posture = posture
         self.target = np.append(posture, np.zeros(SWING_HEIGHT))
         self.shift: Float[np.ndarray, "14"] = NO_SHIFT.value
-        self._sways = False
 
     def set_shift(self, coefficients: Complex[np.ndarray, "7"] | None, value: Float[np.ndarray, "14"]) -> bool:
         """Set the body shift, and return whether it is reached.
@@ -83,17 +82,16 @@ class PoseController:
         frequency, beats : float, int
             Gait cycles per second [1/s]; number of lift-offs per cycle, of legs that lift together.
         """
-        if not (self._sways or any(sway)):
-            return
-        amplitude = np.array(sway)
-        if amplitude.any():
+        before = self.target[SWING_HEIGHT + 1 :]
+        if any(sway) or any(before.tolist()):
+            amplitude = np.array(sway)
             amplitude *= sway_fraction(amplitude, frequency, beats)
-        if (self.target[SWING_HEIGHT + 1 :] != amplitude).any():
-            self.target, self._sways = np.append(self.posture, amplitude), bool(amplitude.any())
+            if (before != amplitude).any():
+                self.target = np.append(self.posture, amplitude)
 
     def is_swaying(self, value: Float[np.ndarray, "13"]) -> bool:
         """Return whether the present posture sways, or its target does."""
-        return self._sways or (value is not self.target and any(value[SWING_HEIGHT + 1 :].tolist()))
+        return any(self.target[SWING_HEIGHT + 1 :].tolist()) or any(value[SWING_HEIGHT + 1 :].tolist())
 
     def reached(self, value: Float[np.ndarray, "13"]) -> bool:
         """Return whether the present posture and its sway have reached their target."""

@@ -157,16 +157,14 @@ class PostureFeedback:
         fastest_turn = quick * _MOST_TURN
         roll, pitch = (min(max(rate, -fastest_turn), fastest_turn) for rate in turn)
         # The nearer a foot is to the end of its reach, the slower it goes there.
-        share, sinks = 1.0, list[tuple[float, float]]()
-        for place, margin in feet:
-            sink, fastest_sink = pitch * place.real - roll * place.imag, _BARRIER * margin
-            sinks.append((sink, fastest_sink))
+        sinks = [(pitch * place.real - roll * place.imag, _BARRIER * margin) for place, margin in feet]
+        share = 1.0
+        for sink, fastest_sink in sinks:
             if sink > 0.0 and fastest_sink < share * sink:
                 share = max(fastest_sink, 0.0) / sink
         roll, pitch = share * roll, share * pitch
-        for sink, fastest_sink in sinks:
-            climb = min(climb, fastest_sink - share * sink)
-        climb, most = max(climb, -2 * fastest), _MOVES if self._rests else _RESTS
+        climb = max(min(climb, *(fastest_sink - share * sink for sink, fastest_sink in sinks)), -2 * fastest)
+        most = _MOVES if self._rests else _RESTS
         self._rests = stands and abs(climb) < most[0] and math.hypot(roll, pitch) < quick * most[1]
         return PostureRates() if self._rests else PostureRates(climb, (roll, pitch))
 
