@@ -89,10 +89,6 @@ class PoseController:
             if (before != amplitude).any():
                 self.target = np.append(self.posture, amplitude)
 
-    def is_swaying(self, value: Float[np.ndarray, "13"]) -> bool:
-        """Return whether the present posture sways, or its target does."""
-        return any(self.target[SWING_HEIGHT + 1 :].tolist()) or any(value[SWING_HEIGHT + 1 :].tolist())
-
     def reached(self, value: Float[np.ndarray, "13"]) -> bool:
         """Return whether the present posture and its sway have reached their target."""
         if value is self.target:

@@ -68,7 +68,6 @@ def _step_inputs(walk: WalkComponents, tick: TickState, dt: float) -> StepInputs
         excluded=parameters.excluded if walk.foot_targets else (),
         unstepped=transitions.unstepped,
         beats=timing.beats,
-        swaying=pose.is_swaying(state.posture.value),
         shift=pose.shift,
         felt=felt,
     )

@@ -194,8 +194,6 @@ class StepInputs(NamedTuple):
         Legs whose feet step even if they are at their rest footholds.
     beats : int
         How many times per cycle feet lift off.
-    swaying : bool
-        Whether the body sways.
     felt : FeltInputs or None
         What is felt of the ground; None for a walk without readings.
     shift : array, shape (14,)
@@ -216,7 +214,6 @@ class StepInputs(NamedTuple):
     excluded: tuple[int, ...] = ()
     unstepped: tuple[int, ...] = ()
     beats: int = 2
-    swaying: bool = True
     felt: FeltInputs | None = None
     shift: Float[np.ndarray, "14"] = NO_SHIFT.value
 

@@ -10,6 +10,7 @@ import numpy as np
 from tarsus.control.filters import CriticallyDamped
 from tarsus.control.walk.foothold import FootholdPredictor, final_footholds
 from tarsus.control.walk.state import PHASE_TOLERANCE, POSITION_TOLERANCE, GaitState, StepInputs, integrate_twist
+from tarsus.gait.stance.stance_geometry import SWING_HEIGHT
 from tarsus.gait.swing_trajectory import quintic
 
 if TYPE_CHECKING:
@@ -53,7 +54,8 @@ def advance(state: GaitState, inputs: StepInputs, dt: float) -> GaitState:
         twist = CriticallyDamped.still(np.zeros(3))
     elapsed = inputs.frequency * dt
     rhythm, cycles, beats = state.rhythm, 0.0, 0.0
-    if inputs.swaying:
+    if any((*state.posture.value[SWING_HEIGHT + 1 :].tolist(), *inputs.posture[SWING_HEIGHT + 1 :].tolist())):
+        # The body sways, or is to.
         rates = inputs.frequency * np.array([1.0, inputs.beats])
         rhythm, (cycles, beats) = state.rhythm.step_with_integral(rates, dt, bandwidth=inputs.bandwidth)
     clock = state.clock + elapsed
@@ -70,9 +72,8 @@ def advance(state: GaitState, inputs: StepInputs, dt: float) -> GaitState:
         beats=state.beats + beats,
     )
     duty_factor = inputs.gait.duty_factor
-    since_lift = [
-        clock - (o + duty_factor + n) for o, n in zip(inputs.gait.offsets, state.step_number.tolist(), strict=True)
-    ]
+    step_of_leg = zip(inputs.gait.offsets, state.step_number.tolist(), strict=True)
+    since_lift = [clock - (offset + duty_factor + number) for offset, number in step_of_leg]
     down = state.down.tolist()
     steps = inputs.frequency > 0.0 and not inputs.hold_feet
     due = [on and steps and since > PHASE_TOLERANCE for on, since in zip(down, since_lift, strict=True)]
