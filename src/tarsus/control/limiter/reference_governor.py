@@ -34,9 +34,9 @@ class GovernorLimiter:
 
     def __init__(self, transitions: TransitionExecutor, looks: Callable[[], bool]) -> None:
         self._transitions, self._looks = transitions, looks
-        # The target that was found last, for which command and stance, and whether it is the command.
+        # The target that was found last, and for which command and stance.
         self._target: Float[np.ndarray, "3"] = np.zeros(3)
-        self._command, self._stance, self._met = list[float](), tuple[Any, ...](), False
+        self._command, self._stance = list[float](), tuple[Any, ...]()
 
     def limit(self, request: TwistRequest, grant: TwistGrant) -> TwistGrant:
         """Return the grant with the twist to follow."""
@@ -44,10 +44,9 @@ class GovernorLimiter:
         stance = (state.down, transitions.timing, transitions.changes_gait, transitions.footholds.bounds)
         # While the same feet stand, what was feasible stays so. Feet that follow the ground stray from what was
         # predicted: with these, each target is examined whenever the ground is looked at.
-        stays = not self._looks() if state.felt else self._met
+        stays = not self._looks() if state.felt else self._target.tolist() == self._command
         if not stays or command != self._command or not all(map(is_, stance, self._stance)):
             self._command, self._stance, self._target = command, stance, self._governed(request, command)
-            self._met = self._target.tolist() == command
         return grant._replace(target=self._target)
 
     def _governed(self, request: TwistRequest, command: list[float]) -> Float[np.ndarray, "3"]:

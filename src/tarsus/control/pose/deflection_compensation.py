@@ -66,8 +66,6 @@ class DeflectionCompensation:
         self._since, self._joints, self._arms = _PERIOD, list[list[float]](), list[_Arms]()
         self._feet, self._sinks = list[tuple[float, float]](), list[float]()
         self._turns: Float[np.ndarray, "legs 3"] = np.zeros((robot.legs, 3))
-        # Their opposite, as far as it is added to the joint angles.
-        self._added = self._turns
         self._loads, self._legs = VerticalLoads(robot), list[tuple[float, ...]]()
         if all(all(leg) for leg in robot.servos):
             yields, g = (1 / JointSprings.of(robot).stiffness[:, 1:]).T, robot.geometry
@@ -105,9 +103,10 @@ class DeflectionCompensation:
             wanted = _SHARE if self._needed + slope >= _FRICTION else 0.0
             self._share += min(_LEARNING_RATE * self._since, 1.0) * (wanted - self._share)
             self._learn(valid, loads)
-            self._since, self._added = 0.0, -(self._share * self.softness) * self._turns
-        self.offsets = np.array(loads)[:, None] * self._added
-        lowered = self._share * self.softness * max(map(mul, self._sinks, loads))
+            self._since = 0.0
+        share = self._share * self.softness
+        self.offsets = np.array(loads)[:, None] * (-share * self._turns)
+        lowered = share * max(map(mul, self._sinks, loads))
         self.lowered += min(_LEARNING_RATE * dt, 1.0) * (lowered - self.lowered)
 
     def _find_feet(self, joints: list[list[float]]) -> None:

@@ -166,10 +166,7 @@ class TransitionScheduler:
         elif requested.excluded:
             # Before a leg leaves the gait, the body shifts over the others.
             order.reverse()
-        for parameters, stay in order:
-            if self._is_open(parameters, stay):
-                return parameters, stay
-        return current, True
+        return next((each for each in order if self._is_open(*each)), (current, True))
 
     def _is_open(self, parameters: WalkParameters, stay: bool) -> bool:
         """Return whether parameters are neither met nor rejected; their posture is not where that stays."""

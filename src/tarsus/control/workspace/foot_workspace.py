@@ -140,13 +140,13 @@ def _spacing(
 def _sides(rest: Complex[np.ndarray, "legs"], reach: Float[np.ndarray, "n legs"]) -> Float[np.ndarray, "legs 16"]:
     """Return the polygons' sides from the lengths of the rays ``(rays, legs)``."""
     reach = np.maximum(reach, -RESERVED_MARGIN)
-    ends = reach * _DIRECTIONS[:, None]
+    rays = _DIRECTIONS[:, None]
+    ends = reach * rays
     tangent = np.roll(ends, -1, axis=0) - np.roll(ends, 1, axis=0)
     size = np.abs(tangent)
-    normal = np.where(size > 0, -1j * tangent / np.where(size > 0, size, 1.0), _DIRECTIONS[:, None])
+    normal = -1j * tangent / np.where(size > 0, size, 1.0)
     # Where the boundary runs along the ray, the direction of the ray is used.
-    slanted = (normal.conj() * _DIRECTIONS[:, None]).real < 0.3
-    normal = np.where(slanted, _DIRECTIONS[:, None], normal)
+    normal = np.where((normal.conj() * rays).real < 0.3, rays, normal)
     side = np.round(np.angle(normal) * _SIDES / (2 * np.pi)).astype(int) % _SIDES
     bounds = np.full((len(rest), _SIDES), reach.max())
     legs = np.broadcast_to(np.arange(len(rest)), side.shape)
