@@ -69,7 +69,7 @@ def touching_in_swing(phase, height, foot):
     for touches in (False, True):
         for _ in range(10):
             take_in(body.contacts, [touches, *[True] * 5], state.down.tolist(), 0.01)
-    return state, body, StepTiming.of(setup.gait, 1.0)
+    return state, body, StepTiming(setup.gait, 1.0)
 
 
 def seen(missing, holes, edge=1.0):
@@ -900,7 +900,7 @@ def test_a_robot_none_of_whose_feet_stands_is_lifted_and_does_not_tip():
 @pytest.mark.parametrize(("phase", "due"), [(0.2, True), (0.8, False)])
 def test_feet_put_down_early_because_the_robot_tips_or_is_lifted_are_still_due(phase, due, tips, in_air):
     setup, rest = setup_of("strider"), rest_of("strider")
-    timing, lifted = StepTiming.of(setup.gait, 1.0), np.array([True, False] * 3)
+    timing, lifted = StepTiming(setup.gait, 1.0), np.array([True, False] * 3)
     state = begun(setup, rest)
     state = state._replace(
         clock=state.clock + phase * timing.swing_time,

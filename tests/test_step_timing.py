@@ -15,7 +15,7 @@ def test_feet_are_due_in_the_tick_in_which_they_lift_off(gait, monkeypatch):
     ticks = []
 
     def stepped(state, inputs, dt):
-        timing, after = StepTiming(inputs.gait, inputs.frequency, inputs.beats), advance(state, inputs, dt)
+        timing, after = StepTiming(inputs.gait, inputs.frequency), advance(state, inputs, dt)
         if inputs.frequency and not after.down.all():
             ticks.append((timing.due(state, dt), next_lift.is_due(timing, state, dt), state.down & ~after.down))
         return after
@@ -42,4 +42,4 @@ def test_feet_are_due_in_the_tick_in_which_they_lift_off(gait, monkeypatch):
     ],
 )
 def test_feet_are_redundant_where_more_than_three_stand_at_any_time(gait, redundant):
-    assert StepTiming.of(gait, 1.0).redundant is redundant
+    assert StepTiming(gait, 1.0).redundant is redundant

@@ -187,6 +187,11 @@ class Gait:
         return len(self.offsets)
 
     @cached_property
+    def beats(self) -> int:
+        """How many times per cycle feet lift off: legs that lift together count once."""
+        return len(set(self.offsets))
+
+    @cached_property
     def fewest_feet_down(self) -> int:
         """Least number of feet on the ground during the cycle."""
         # The number decreases only at lift-offs.

@@ -44,7 +44,7 @@ def _step_inputs(walk: WalkComponents, tick: TickState, dt: float) -> StepInputs
     timing, pose, parameters = transitions.timing, transitions.pose, transitions.current.parameters
     footholds, excluded = transitions.footholds, walk.foot_targets.legs
     sway = _NO_MOTION if standing or timing.gait.body_shift else parameters.sway
-    pose.set_sway(sway, frequency=timing.frequency, beats=timing.beats)
+    pose.set_sway(sway, frequency=timing.frequency, beats=timing.gait.beats)
     hold_feet, felt, offsets = transitions.changes_gait, None, state.admittance_offset.value
     if state.felt:
         footholds.shift(walk.ground.body.stance.shift)
@@ -67,7 +67,6 @@ def _step_inputs(walk: WalkComponents, tick: TickState, dt: float) -> StepInputs
         hold_feet=hold_feet,
         excluded=parameters.excluded if walk.foot_targets else (),
         unstepped=transitions.unstepped,
-        beats=timing.beats,
         shift=pose.shift,
         felt=felt,
     )

@@ -59,7 +59,7 @@ class TransitionExecutor:
     def __init__(self, initial: StanceTransition, foot_targets: FootTargets, *, scale: float = 1.0) -> None:
         self.scheduler, self.footholds = TransitionScheduler(initial), FootholdTransfer(initial)
         self.pose = PoseController(initial.posture)
-        self.timing = StepTiming.of(initial.parameters.gait, initial.cycle_timing.cycle_time)
+        self.timing = StepTiming(initial.parameters.gait, 1 / initial.cycle_timing.cycle_time)
         self.current, self.lengthened = initial, 1.0
         self._foot_targets, self._scale = foot_targets, scale
         # The gait for which all feet touch down, and the transition for which they step to new rest footholds.
@@ -75,7 +75,7 @@ class TransitionExecutor:
     def limitations(self) -> tuple[Limitation, ...]:
         """What of the commanded parameters is not met, and will not be."""
         sway, found = self.current.parameters.sway, self.scheduler.limitations
-        fraction = sway_fraction(np.array(sway), self.timing.frequency, self.timing.beats) if any(sway) else 1.0
+        fraction = sway_fraction(np.array(sway), self.timing.frequency, self.timing.gait.beats) if any(sway) else 1.0
         fraction, cause = (0.0, _SHIFTS) if self.timing.gait.body_shift and any(sway) else (fraction, _SWAY)
         return found if fraction == 1 else (*found, cause.limitation(LimitationKind.SWAY, asked=1.0, granted=fraction))
 
@@ -197,7 +197,7 @@ class TransitionExecutor:
     def _try_to_change_gait(self, planned: StanceTransition, now: TickState) -> None:
         """Let all feet touch down, if they may stand for so long; the leg that suits best then lifts first."""
         cycle_time, gait = planned.cycle_timing.cycle_time, planned.parameters.gait
-        timing, delays = StepTiming.of(gait, cycle_time), lift_delays(gait, cycle_time)
+        timing, delays = StepTiming(gait, 1 / cycle_time), lift_delays(gait, cycle_time)
         ends = time_to_touchdown(now.gait, self.timing).max() + delays
         bounds = self._foot_targets.without_bounds(self.footholds.bounds_with(planned))
         bounds = self.footholds.shifted(np.minimum(bounds, planned.final_limits.bounds))
@@ -238,7 +238,7 @@ class TransitionExecutor:
     def _start_gait(self, planned: StanceTransition, first: int, state: GaitState) -> GaitState:
         """Start a gait; every foot is down."""
         self._begin(planned, state)
-        self.timing = StepTiming.of(planned.parameters.gait, planned.cycle_timing.cycle_time)
+        self.timing = StepTiming(planned.parameters.gait, 1 / planned.cycle_timing.cycle_time)
         return self.timing.with_first_lift(state, first)
 
     # After a tick.

@@ -168,7 +168,7 @@ def stance_intervals(
     state, timing : GaitState, StepTiming
         The gait state; the gait and its frequency.
     """
-    gait, frequency, _ = timing
+    gait, frequency = timing
     duty_factor = gait.duty_factor
     over = (stance_overhang(duty_factor) - 0.5) * duty_factor / frequency
     touchdown = np.asarray(gait.offsets) + state.step_number - state.clock

@@ -192,8 +192,6 @@ class StepInputs(NamedTuple):
         Legs whose feet may not lift off.
     unstepped : tuple of int
         Legs whose feet step even if they are at their rest footholds.
-    beats : int
-        How many times per cycle feet lift off.
     felt : FeltInputs or None
         What is felt of the ground; None for a walk without readings.
     shift : array, shape (14,)
@@ -213,7 +211,6 @@ class StepInputs(NamedTuple):
     hold_feet: bool = False
     excluded: tuple[int, ...] = ()
     unstepped: tuple[int, ...] = ()
-    beats: int = 2
     felt: FeltInputs | None = None
     shift: Float[np.ndarray, "14"] = NO_SHIFT.value
 

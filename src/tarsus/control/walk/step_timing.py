@@ -28,18 +28,10 @@ class StepTiming(NamedTuple):
         Order of the steps.
     frequency : float
         Cycles per second [1/s].
-    beats : int
-        How many times per cycle feet lift off.
     """
 
     gait: Gait
     frequency: float
-    beats: int
-
-    @classmethod
-    def of(cls, gait: Gait, cycle_time: float) -> StepTiming:
-        """Return the timing of a gait with cycles of a duration [s]."""
-        return cls(gait, 1 / cycle_time, len(set(gait.offsets)))
 
     @property
     def bandwidth(self) -> float:

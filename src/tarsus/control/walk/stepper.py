@@ -56,7 +56,7 @@ def advance(state: GaitState, inputs: StepInputs, dt: float) -> GaitState:
     rhythm, cycles, beats = state.rhythm, 0.0, 0.0
     if any((*state.posture.value[SWING_HEIGHT + 1 :].tolist(), *inputs.posture[SWING_HEIGHT + 1 :].tolist())):
         # The body sways, or is to.
-        rates = inputs.frequency * np.array([1.0, inputs.beats])
+        rates = inputs.frequency * np.array([1.0, inputs.gait.beats])
         rhythm, (cycles, beats) = state.rhythm.step_with_integral(rates, dt, bandwidth=inputs.bandwidth)
     clock = state.clock + elapsed
     after = state._replace(
