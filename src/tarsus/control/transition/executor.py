@@ -13,9 +13,9 @@ from tarsus.control.transition.scheduler import PlanTransition, TransitionSchedu
 from tarsus.control.transition.stance_transition import NextGait, StanceTransition
 from tarsus.control.walk.foot_targets import FootTargets
 from tarsus.control.walk.foothold import final_footholds
-from tarsus.control.walk.reference_governor import FootPrediction, lift_delays, stance_intervals, time_to_touchdown
+from tarsus.control.walk.reference_governor import FootPrediction
 from tarsus.control.walk.state import POSITION_TOLERANCE, GaitState
-from tarsus.control.walk.step_timing import StepTiming
+from tarsus.control.walk.step_timing import StepTiming, lift_delays
 from tarsus.control.walk.stepper import stance_tolerance
 from tarsus.control.walk_state import TickState
 from tarsus.gait.stance.stance_geometry import sway_fraction
@@ -122,8 +122,8 @@ class TransitionExecutor:
     def stance_intervals(self, state: GaitState) -> tuple[Float[np.ndarray, "legs"], Float[np.ndarray, "legs"]]:
         """Return from when until when each foot stands where it is, or where it will touch down: shape (legs,) [s]."""
         if self._next is None:
-            return stance_intervals(state, self.timing)
-        begins = time_to_touchdown(state, self.timing)
+            return self.timing.stance_intervals(state)
+        begins = self.timing.time_to_touchdown(state)
         return begins, begins.max() + self._next.delays
 
     def _is_settled(self, state: GaitState) -> bool:
@@ -198,7 +198,7 @@ class TransitionExecutor:
         """Let all feet touch down, if they may stand for so long; the leg that suits best then lifts first."""
         cycle_time, gait = planned.cycle_timing.cycle_time, planned.parameters.gait
         timing, delays = StepTiming(gait, 1 / cycle_time), lift_delays(gait, cycle_time)
-        ends = time_to_touchdown(now.gait, self.timing).max() + delays
+        ends = self.timing.time_to_touchdown(now.gait).max() + delays
         bounds = self._foot_targets.without_bounds(self.footholds.bounds_with(planned))
         bounds = self.footholds.shifted(np.minimum(bounds, planned.final_limits.bounds))
         prediction = FootPrediction.of(now.gait, np.zeros(delays.shape), ends, timing.bandwidth)
@@ -220,7 +220,7 @@ class TransitionExecutor:
             self._active = None
 
     def _stays_within(self, bounds: Float[np.ndarray, "legs 16"], now: TickState, timing: StepTiming) -> bool:
-        prediction = FootPrediction.of(now.gait, *stance_intervals(now.gait, timing), timing.bandwidth)
+        prediction = FootPrediction.of(now.gait, *timing.stance_intervals(now.gait), timing.bandwidth)
         excess = prediction.excess(now.twist[None], self.footholds.shifted(bounds))
         return bool(excess.max() <= stance_tolerance(now.gait, scale=self._scale))
 

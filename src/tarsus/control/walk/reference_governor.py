@@ -13,15 +13,12 @@ import numpy as np
 
 from tarsus.control.filters import integral_factors
 from tarsus.control.walk.state import GaitState
-from tarsus.control.walk.step_timing import StepTiming
 from tarsus.gait.foot_polygons import NORMALS
-from tarsus.gait.gait import Gait
-from tarsus.gait.stance.velocity_limits import stance_overhang
 
 if TYPE_CHECKING:
     from jaxtyping import Complex, Float
 
-__all__ = ["FootPrediction", "lift_delays", "stance_intervals", "time_to_touchdown"]
+__all__ = ["FootPrediction"]
 
 # Rounding of a distance [m].
 _TOLERANCE = 1e-9
@@ -156,49 +153,3 @@ def _last_feasible(excess: Float[np.ndarray, "n 3 legs 16"]) -> int | None:
     """Return the index of the last target with which every foot stays in its polygon."""
     feasible: list[bool] = (np.maximum.reduce(excess, axis=(1, 2, 3)) <= _TOLERANCE).tolist()
     return len(feasible) - 1 - feasible[::-1].index(True) if True in feasible else None
-
-
-def stance_intervals(
-    state: GaitState, timing: StepTiming
-) -> tuple[Float[np.ndarray, "legs"], Float[np.ndarray, "legs"]]:
-    """Return from when until when each foot stands where it is, or where it will be put down: shape (legs,) each [s].
-
-    Parameters
-    ----------
-    state, timing : GaitState, StepTiming
-        The gait state; the gait and its frequency.
-    """
-    gait, frequency = timing
-    duty_factor = gait.duty_factor
-    over = (stance_overhang(duty_factor) - 0.5) * duty_factor / frequency
-    touchdown = np.asarray(gait.offsets) + state.step_number - state.clock
-    # A foot that has met the ground before its planned touchdown is where it may be from then on. One that waits
-    # already is past its lift-off: on ground that is felt, feet often wait for a tick or two until others have landed,
-    # which is taken from the time in which they fall behind after lift-off.
-    waits, least = (touchdown.clip(0.0) / frequency, 0.0) if state.felt else (0.0, over)
-    begins = np.where(state.down, waits, time_to_touchdown(state, timing))
-    lift_off = np.maximum((touchdown + duty_factor) / frequency + over, least)
-    return begins, np.where(state.down, lift_off, begins + duty_factor / frequency + over)
-
-
-def time_to_touchdown(state: GaitState, timing: StepTiming) -> Float[np.ndarray, "legs"]:
-    """Return the time until each foot touches down: array, shape (legs,) [s]."""
-    return np.where(state.down, 0.0, (1 - state.swing_phase) * (1 - timing.gait.duty_factor) / timing.frequency)
-
-
-def lift_delays(gait: Gait, cycle_time: float) -> Float[np.ndarray, "legs legs"]:
-    """Return how long each foot stands at the start of a gait, with all feet down: array, shape (legs, legs) [s].
-
-    Parameters
-    ----------
-    gait, cycle_time : Gait, float
-        Order of the steps; duration of a cycle [s].
-
-    Returns
-    -------
-    array
-        For each leg, in each row for the row's leg lifting off first.
-    """
-    offsets = np.asarray(gait.offsets)
-    over = (stance_overhang(gait.duty_factor) - 0.5) * gait.duty_factor
-    return np.asarray(((offsets - offsets[:, None]) % 1 + over) * cycle_time)

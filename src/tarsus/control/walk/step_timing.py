@@ -4,14 +4,18 @@ from __future__ import annotations
 
 import math
 from operator import is_not
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from tarsus.control.walk.state import PHASE_TOLERANCE, GaitState
 from tarsus.gait.gait import Gait
+from tarsus.gait.stance.velocity_limits import stance_overhang
 
-__all__ = ["NextLift", "StepTiming"]
+if TYPE_CHECKING:
+    from jaxtyping import Float
+
+__all__ = ["NextLift", "StepTiming", "lift_delays"]
 
 # The twist follows its target within about one stance: faster, and standing feet would be left behind.
 _TIME_CONSTANTS_PER_STANCE = 4.0
@@ -73,6 +77,23 @@ class StepTiming(NamedTuple):
         steps = zip(state.down.tolist(), self.gait.offsets, state.step_number.tolist(), strict=True)
         return [offset + number + lifts if down else math.inf for down, offset, number in steps]
 
+    def stance_intervals(self, state: GaitState) -> tuple[Float[np.ndarray, "legs"], Float[np.ndarray, "legs"]]:
+        """Return from when until when each foot stands where it is, or where it will be put down: shape (legs,) [s]."""
+        duty_factor, frequency = self.gait.duty_factor, self.frequency
+        over = (stance_overhang(duty_factor) - 0.5) * duty_factor / frequency
+        touchdown = np.asarray(self.gait.offsets) + state.step_number - state.clock
+        # A foot that has met the ground before its planned touchdown is where it may be from then on. One that waits
+        # already is past its lift-off: on ground that is felt, feet often wait for a tick or two until others have
+        # landed, which is taken from the time in which they fall behind after lift-off.
+        waits, least = (touchdown.clip(0.0) / frequency, 0.0) if state.felt else (0.0, over)
+        begins = np.where(state.down, waits, self.time_to_touchdown(state))
+        lift_off = np.maximum((touchdown + duty_factor) / frequency + over, least)
+        return begins, np.where(state.down, lift_off, begins + duty_factor / frequency + over)
+
+    def time_to_touchdown(self, state: GaitState) -> Float[np.ndarray, "legs"]:
+        """Return the time until each foot touches down: array, shape (legs,) [s]."""
+        return np.where(state.down, 0.0, (1 - state.swing_phase) * (1 - self.gait.duty_factor) / self.frequency)
+
     def with_first_lift(self, state: GaitState, leg: int) -> GaitState:
         """Return the gait state with the clock at the lift-off of a leg; while the body is shifted, the clock stays.
 
@@ -107,3 +128,21 @@ class NextLift:
         if not self._steps or any(map(is_not, steps, self._steps)):
             self._steps, self._clock = steps, min(timing.lift_clocks(state))
         return state.clock + timing.frequency * dt > self._clock
+
+
+def lift_delays(gait: Gait, cycle_time: float) -> Float[np.ndarray, "legs legs"]:
+    """Return how long each foot stands at the start of a gait, with all feet down: array, shape (legs, legs) [s].
+
+    Parameters
+    ----------
+    gait, cycle_time : Gait, float
+        Order of the steps; duration of a cycle [s].
+
+    Returns
+    -------
+    array
+        For each leg, in each row for the row's leg lifting off first.
+    """
+    offsets = np.asarray(gait.offsets)
+    over = (stance_overhang(gait.duty_factor) - 0.5) * gait.duty_factor
+    return np.asarray(((offsets - offsets[:, None]) % 1 + over) * cycle_time)
