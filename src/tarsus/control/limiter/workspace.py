@@ -46,10 +46,9 @@ class WorkspaceLimiter:
         """Return the grant for at most the fraction that is sustainable."""
         transitions = self._transitions
         frequency = min(transitions.timing.frequency, 1 / transitions.current.cycle_timing.cycle_time)
-        limits, pending = transitions.footholds.limits, transitions.pending
         longest, speed = self._adapted()
         most = max(grant.fraction, 1.0)
-        key = (request.twist, most, frequency, limits, pending, longest, speed)
+        key = (request.twist, most, frequency, transitions.stances, longest, speed)
         if key != self._key:
             self._key, (fraction, cause) = key, self._largest(request.twist, frequency, most)
             walks = any(request.twist)
@@ -64,12 +63,8 @@ class WorkspaceLimiter:
 
     def _largest(self, twist: tuple[float, ...], frequency: float, most: float) -> tuple[float, Cause]:
         """Return the largest sustainable fraction, up to a greatest one, and what limits it."""
-        transitions, pending = self._transitions, self._transitions.pending
-        stances = [(transitions.current, transitions.footholds.limits)]
-        if pending is not None:
-            stances.append((pending, pending.path_limits))
         fraction, leg = most, 0
-        for transition, limits in stances:
+        for transition, limits in self._transitions.stances:
             duty_factor = transition.parameters.gait.duty_factor
             stance_time = duty_factor * max(1 / frequency, transition.cycle_timing.cycle_time)
             longest, which = _longest_stance(limits, twist, duty_factor)

@@ -19,6 +19,7 @@ from tarsus.control.walk.step_timing import StepTiming, lift_delays
 from tarsus.control.walk.stepper import stance_tolerance
 from tarsus.control.walk_state import TickState
 from tarsus.gait.stance.stance_geometry import sway_fraction
+from tarsus.gait.stance.velocity_limits import VelocityLimits
 
 if TYPE_CHECKING:
     from jaxtyping import Complex, Float
@@ -67,9 +68,10 @@ class TransitionExecutor:
         self._active: StanceTransition | None = None
 
     @property
-    def pending(self) -> StanceTransition | None:
-        """The transition that is planned, or for which feet touch down or step."""
-        return self.scheduler.planned or (self._active if self._next is None else self._next.transition)
+    def stances(self) -> list[tuple[StanceTransition, VelocityLimits]]:
+        """Transitions whose limits hold: the present one, and one that is planned or for which feet land or step."""
+        pending = self.scheduler.planned or (self._active if self._next is None else self._next.transition)
+        return [(self.current, self.footholds.limits), *([(pending, pending.path_limits)] if pending else [])]
 
     @property
     def limitations(self) -> tuple[Limitation, ...]:
