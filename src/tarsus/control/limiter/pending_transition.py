@@ -32,8 +32,7 @@ class PendingTransitionLimiter:
 
     def limit(self, request: TwistRequest, grant: TwistGrant) -> TwistGrant:
         """Return the grant, reduced by the time that the transition has been waiting."""
-        waiting = self._transitions.waiting
-        self._fraction = self._fraction * math.exp(-request.dt / _TIME_CONSTANT) if waiting else 1.0
+        self._fraction = self._fraction * math.exp(-request.dt / _TIME_CONSTANT) if self._transitions.waiting else 1.0
         planned = self._transitions.scheduler.planned
         if planned is not None and self._transitions.timing.stands_before(planned.parameters.gait):
             self._fraction = 0.0
