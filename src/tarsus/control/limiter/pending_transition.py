@@ -39,7 +39,7 @@ class PendingTransitionLimiter:
         if self._fraction == 1.0:
             # What makes up for lost time stays.
             return grant
-        limitation = None
         if self._fraction < _REPORTED and any(request.twist):
-            limitation = Limitation(kind=LimitationKind.TWIST, cause=_CAUSE, asked=1.0, granted=self._fraction)
-        return grant.at_most(self._fraction, limitation)
+            slow = Limitation(kind=LimitationKind.TWIST, cause=_CAUSE, asked=1.0, granted=self._fraction)
+            return grant.at_most(self._fraction, slow)
+        return grant.at_most(self._fraction)

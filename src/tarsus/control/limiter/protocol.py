@@ -61,10 +61,9 @@ class TwistGrant(NamedTuple):
     target: Float[np.ndarray, "3"] | None = None
     limitations: tuple[Limitation, ...] = ()
 
-    def at_most(self, fraction: float, limitation: Limitation | None = None) -> TwistGrant:
-        """Return the grant with a fraction no greater than another, and with a limitation to report, if any."""
-        limitations = self.limitations if limitation is None else (*self.limitations, limitation)
-        return self._replace(fraction=min(self.fraction, fraction), limitations=limitations)
+    def at_most(self, fraction: float, *limitations: Limitation) -> TwistGrant:
+        """Return the grant with a fraction no greater than another, and with limitations to report, if any."""
+        return self._replace(fraction=min(self.fraction, fraction), limitations=(*self.limitations, *limitations))
 
     def scaled(self, twist: Sequence[float]) -> list[float]:
         """Return a twist times the fraction."""

@@ -40,7 +40,7 @@ class WorkspaceLimiter:
     ) -> None:
         self._names, self._transitions, self._adapted = names, transitions, adapted
         self._key: tuple[Any, ...] = ()
-        self._found: tuple[float, Limitation | None] = 1.0, None
+        self._fraction, self._short = 1.0, list[Limitation]()
 
     def limit(self, request: TwistRequest, grant: TwistGrant) -> TwistGrant:
         """Return the grant for at most the fraction that is sustainable."""
@@ -57,9 +57,9 @@ class WorkspaceLimiter:
             transitions.lengthened = min(max(_SPARE * max(fastest, 1 / speed), 1.0), longest)
             if speed < 1 and speed * fastest < fraction:
                 fraction, cause = speed * fastest, Cause(_ROUGH)
-            short = cause.limitation(LimitationKind.TWIST, asked=1.0, granted=fraction) if fraction < 1 else None
-            self._found = fraction, short
-        return grant.at_most(*self._found)
+            short = cause.limitation(LimitationKind.TWIST, asked=1.0, granted=fraction)
+            self._fraction, self._short = fraction, [short] if fraction < 1 else []
+        return grant.at_most(self._fraction, *self._short)
 
     def _largest(self, twist: tuple[float, ...], frequency: float, most: float) -> tuple[float, Cause]:
         """Return the largest sustainable fraction, up to a greatest one, and what limits it."""

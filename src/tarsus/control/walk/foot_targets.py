@@ -226,13 +226,10 @@ class FootTargets:
         down : array of bool, shape (legs,)
             Feet that are not in a swing.
         """
-        if self._motions:
-            self._motions = {leg: motion.step(time) for leg, motion in self._motions.items() if down[leg]}
+        self._motions = {leg: motion.step(time) for leg, motion in self._motions.items() if down[leg]}
 
     def without_bounds(self, bounds: Float[np.ndarray, "legs 16"]) -> Float[np.ndarray, "legs 16"]:
         """Return the sides of the feet's polygons, infinite for the feet that do not step [m]."""
-        if not self._motions:
-            return bounds
         free = bounds.copy()
         free[self.legs] = np.inf
         return free
