@@ -27,11 +27,13 @@ if TYPE_CHECKING:
 __all__ = ["foot_workspace", "rest_margin"]
 
 _RAYS, _SIDES, _RINGS, _INNER, _FINE = 24, len(NORMALS), 8, 5, 5
-_DIRECTIONS = np.exp(2j * np.pi * np.arange(_RAYS) / _RAYS)
+_DIRECTIONS = np.exp(2j * np.pi * np.arange(_RAYS) / _RAYS)[:, None]
 # Greatest number of passes that move sides inwards.
 _PASSES = 6
-# The points tested on each side, and the fractions of the distance from the rest foothold to them that are tested.
+# The points tested on each side, the side's normal at each of them, as a factor for coordinates along it, and the
+# fractions of the distance from the rest foothold to them that are tested.
 _ALONG = np.array([1, 2, 3])[:, None] / 3
+_EDGE_NORMALS = np.repeat(NORMALS_CONJUGATE, len(_ALONG))[:, None]
 _FRACTIONS = np.array([0.3, 0.6, 0.8, 0.92, 1.0])[:, None, None]
 # Sides are moved by this fraction more than needed, so that the next corners are inside; tolerance of fractions.
 _EXTRA, _TOLERANCE = 0.01, 1e-9
@@ -56,15 +58,15 @@ def foot_workspace(
     margin, spacing = LegMargin(robot, stance), partial(_spacing, stance.rest, foot_distance)
     step = _ring(robot)
     rings = np.arange(_RINGS + 1)[:, None, None] * step
-    inner = margin(rings[:_INNER] * _DIRECTIONS[:, None])
+    inner = margin(rings[:_INNER] * _DIRECTIONS)
     yield
-    outer = margin(rings[_INNER:] * _DIRECTIONS[:, None])
+    outer = margin(rings[_INNER:] * _DIRECTIONS)
     last_feasible = _first_zero(rings, np.concatenate([inner, outer]), interpolation=0.0)
     yield
     rays = last_feasible + np.arange(_FINE + 1)[:, None, None] * (step / _FINE)
-    reach = _first_zero(rays, margin(rays * _DIRECTIONS[:, None]), interpolation=1.0) - RESERVED_MARGIN
+    reach = _first_zero(rays, margin(rays * _DIRECTIONS), interpolation=1.0) - RESERVED_MARGIN
     yield
-    bounds = _sides(stance.rest, np.minimum(reach, spacing(_DIRECTIONS[:, None])))
+    bounds = _sides(stance.rest, np.minimum(reach, spacing(_DIRECTIONS)))
     for _ in range(_PASSES):
         edge = _edge(bounds, stance.rest)
         fraction = spacing(edge)
@@ -76,7 +78,10 @@ def foot_workspace(
         short = fraction < 1 - _TOLERANCE
         if not short.any():
             break
-        bounds = _moved_inwards(bounds, stance.rest, edge, np.where(short, fraction - _EXTRA, np.inf))
+        # Where the polygon reaches out too far, sides move inwards.
+        sides = (_EDGE_NORMALS * (stance.rest + np.clip(fraction - _EXTRA, 0.0, 1.0) * edge)).real
+        sides = np.where(short, sides, np.inf).reshape(_SIDES, len(_ALONG), -1).min(axis=1)
+        bounds = np.minimum(bounds, sides.T)
     return bounds
 
 
@@ -96,7 +101,7 @@ def rest_margin(robot: Robot, stance: StanceGeometry, *, knees: bool = True) -> 
         Distances [m]; where negative, a side of the `foot_workspace` lies before the rest foothold.
     """
     rays = np.arange(2)[:, None, None] * (_ring(robot) / _FINE)
-    out = np.concatenate([[0j], rays[1, 0] * _DIRECTIONS])[:, None]
+    out = np.concatenate([[[0j]], rays[1] * _DIRECTIONS])
     margin = LegMargin(robot, stance, knees=knees)(out)
     ends = np.stack([np.broadcast_to(margin[0], margin[1:].shape), margin[1:]])
     return np.asarray(_first_zero(rays, ends, interpolation=1.0).min(axis=0)) - RESERVED_MARGIN
@@ -140,13 +145,12 @@ def _spacing(
 def _sides(rest: Complex[np.ndarray, "legs"], reach: Float[np.ndarray, "n legs"]) -> Float[np.ndarray, "legs 16"]:
     """Return the polygons' sides from the lengths of the rays ``(rays, legs)``."""
     reach = np.maximum(reach, -RESERVED_MARGIN)
-    rays = _DIRECTIONS[:, None]
-    ends = reach * rays
+    ends = reach * _DIRECTIONS
     tangent = np.roll(ends, -1, axis=0) - np.roll(ends, 1, axis=0)
     size = np.abs(tangent)
     normal = -1j * tangent / np.where(size > 0, size, 1.0)
     # Where the boundary runs along the ray, the direction of the ray is used.
-    normal = np.where((normal.conj() * rays).real < 0.3, rays, normal)
+    normal = np.where((normal.conj() * _DIRECTIONS).real < 0.3, _DIRECTIONS, normal)
     side = np.round(np.angle(normal) * _SIDES / (2 * np.pi)).astype(int) % _SIDES
     bounds = np.full((len(rest), _SIDES), reach.max())
     legs = np.broadcast_to(np.arange(len(rest)), side.shape)
@@ -158,16 +162,3 @@ def _edge(bounds: Float[np.ndarray, "legs 16"], rest: Complex[np.ndarray, "legs"
     """Return points on the polygons' edges ``(3 * 16, legs)``, relative to the rest footholds."""
     start, end = (ends.T[:, None] for ends in polygon_ends(bounds, rest))
     return np.asarray(start + _ALONG * (end - start)).reshape(-1, len(rest))
-
-
-def _moved_inwards(
-    bounds: Float[np.ndarray, "legs 16"],
-    rest: Complex[np.ndarray, "legs"],
-    edge: Complex[np.ndarray, "n legs"],
-    fraction: Float[np.ndarray, "*batch"],
-) -> Float[np.ndarray, "legs 16"]:
-    """Return the sides moved inwards to a fraction of the distance to points of `_edge`; unchanged where infinite."""
-    normals = np.repeat(NORMALS, len(_ALONG))[:, None]
-    inner = (normals.conj() * (rest + np.clip(fraction, 0.0, 1.0) * edge)).real
-    inner = np.where(np.isfinite(fraction), inner, np.inf).reshape(_SIDES, len(_ALONG), -1).min(axis=1)
-    return np.asarray(np.minimum(bounds, inner.T))
