@@ -11,7 +11,6 @@ from tarsus.control.workspace.foot_workspace import foot_workspace
 from tarsus.control.workspace.stance_limits import velocity_limits
 from tarsus.gait.foot_polygons import NORMALS, polygon_margin
 from tarsus.gait.gait import Gait
-from tarsus.gait.stance.stability import support_sets
 from tarsus.gait.stance.stance_geometry import stance_geometry_of
 from tarsus.gait.walk_setup import WalkSetup
 from tarsus.kinematics.pose import Pose
@@ -57,8 +56,9 @@ def polygons(name, body=POSTURES[0]):
 @functools.cache
 def velocity_limits_of(name, gait="tripod", body=POSTURES[0]):
     setup = setup_of(name, gait)
-    sets = support_sets(setup.gait)
-    return complete(velocity_limits(setup.robot, [standing(setup, body)], sets, foot_distance=setup.foot_distance))
+    return complete(
+        velocity_limits(setup.robot, setup.gait, [standing(setup, body)], foot_distance=setup.foot_distance)
+    )
 
 
 @functools.cache

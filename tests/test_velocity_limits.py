@@ -217,9 +217,8 @@ def test_stroke_limits_bound_the_distance_from_the_rest_foothold():
 
 def test_stroke_limits_leave_excluded_legs_unbounded():
     setup = setup_of("strider", "wave")
-    sets = support_sets(setup.gait, (2,))
     found = complete(
-        velocity_limits(setup.robot, [standing(setup)], sets, foot_distance=setup.foot_distance, excluded=(2,))
+        velocity_limits(setup.robot, setup.gait, [standing(setup)], foot_distance=setup.foot_distance, excluded=(2,))
     )
     less = with_stroke_limits(found, 0.02, 0.02, duty_factor=setup.gait.duty_factor)
     assert np.isinf(less.bounds[2]).all()
@@ -237,10 +236,8 @@ def test_the_intersection_is_feasible_in_both():
         assert (both.margins <= limits.margins).all()
     assert (both.stroke, both.turning) == (0.05, 0.04)
     stands = [standing(setup_of("strider"), POSTURES[i]) for i in (0, 1)]
-    sets = support_sets(Gait.named("tripod"))
-    at_once = complete(
-        velocity_limits(setup_of("strider").robot, stands, sets, foot_distance=setup_of("strider").foot_distance)
-    )
+    setup = setup_of("strider")
+    at_once = complete(velocity_limits(setup.robot, setup.gait, stands, foot_distance=setup.foot_distance))
     np.testing.assert_array_equal(
         at_once.bounds, one.intersection(velocity_limits_of("strider", body=POSTURES[1])).bounds
     )
@@ -249,9 +246,7 @@ def test_the_intersection_is_feasible_in_both():
 def test_a_centre_of_mass_outside_its_support_polygon_is_infeasible():
     # Four legs in a wave: on three feet the middle of the body is on an edge.
     setup = setup_of(ring(4), WAVE_OF_FOUR)
-    found = complete(
-        velocity_limits(setup.robot, [standing(setup)], support_sets(setup.gait), foot_distance=setup.foot_distance)
-    )
+    found = complete(velocity_limits(setup.robot, setup.gait, [standing(setup)], foot_distance=setup.foot_distance))
     assert not found.feasible
     assert (found.margins < 0).all()
     assert found.feasible_fraction(np.array([0.1, 0, 0]), stance_time=1.0, duty_factor=0.75)[0] == 0

@@ -194,8 +194,7 @@ class TransitionPlanner:
         if gait.body_shift:
             return shifted_limits(self._robot, gait, stance.stand, foot_distance=distance)
         stands = [stance._replace(posture=row).stand for row in sway_extremes(stance.posture, parameters.sway)]
-        sets = support_sets(gait, excluded)
-        return velocity_limits(self._robot, stands, sets, foot_distance=distance, excluded=excluded)
+        return velocity_limits(self._robot, gait, stands, foot_distance=distance, excluded=excluded)
 
     def _path_limits(
         self, parameters: WalkParameters, start: StanceTarget, goal: StanceTarget, final: VelocityLimits

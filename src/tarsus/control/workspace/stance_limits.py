@@ -14,14 +14,14 @@ from tarsus.control.workspace.foot_workspace import foot_workspace
 from tarsus.gait.body_shift import shift_at
 from tarsus.gait.foot_polygons import NORMALS_CONJUGATE
 from tarsus.gait.gait import Gait
-from tarsus.gait.stance.stability import StabilityCheck, safe_fraction
+from tarsus.gait.stance.stability import StabilityCheck, safe_fraction, support_sets
 from tarsus.gait.stance.stance_geometry import StanceGeometry
 from tarsus.gait.stance.stance_shift import stance_shift, support_phases
 from tarsus.gait.stance.velocity_limits import VelocityLimits
 from tarsus.robot.robot import Robot
 
 if TYPE_CHECKING:
-    from jaxtyping import Bool, Float
+    from jaxtyping import Float
 
 __all__ = ["shifted_limits", "velocity_limits"]
 
@@ -30,29 +30,22 @@ _SHIFT_PHASES = np.arange(8) / 8
 
 
 def velocity_limits(
-    robot: Robot,
-    stances: Sequence[StanceGeometry],
-    sets: Bool[np.ndarray, "n legs"],
-    *,
-    foot_distance: float,
-    excluded: tuple[int, ...] = (),
+    robot: Robot, gait: Gait, stances: Sequence[StanceGeometry], *, foot_distance: float, excluded: tuple[int, ...] = ()
 ) -> Incremental[VelocityLimits]:
     """Find the limits that hold in each of some stances.
 
     Parameters
     ----------
-    robot : Robot
-        A single robot.
+    robot, gait : Robot, Gait
+        A single robot; a gait without a body shift.
     stances : sequence of StanceGeometry
         At least one; the last is the one that stays.
-    sets : array of bool, shape (n, legs)
-        Feet that are in stance together.
     foot_distance : float
         Least distance between two feet [m].
     excluded : tuple of int
         Legs that do not step: their position is not bounded here, but may shift the centre of mass.
     """
-    found, check = list[VelocityLimits](), None
+    found, check, sets = list[VelocityLimits](), None, support_sets(gait, excluded)
     for stance in stances:
         sides = yield from foot_workspace(robot, stance, foot_distance=foot_distance)
         # Prepared in this stage, which has little else to do.
