@@ -45,7 +45,7 @@ class WorkspaceLimiter:
     def limit(self, request: TwistRequest, grant: TwistGrant) -> TwistGrant:
         """Return the grant for at most the fraction that is sustainable."""
         transitions = self._transitions
-        frequency = min(transitions.timing.frequency, 1 / transitions.current.cycle_timing.cycle_time)
+        frequency = min(transitions.timing.frequency, transitions.current.timing.frequency)
         longest, speed = self._adapted()
         most = max(grant.fraction, 1.0)
         key = (request.twist, most, frequency, transitions.stances, longest, speed)

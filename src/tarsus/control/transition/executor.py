@@ -10,12 +10,12 @@ from tarsus.control.limitation import Cause, Limitation, LimitationKind
 from tarsus.control.pose.pose_controller import PoseController
 from tarsus.control.transition.foothold_transfer import FootholdTransfer
 from tarsus.control.transition.scheduler import PlanTransition, TransitionScheduler
-from tarsus.control.transition.stance_transition import NextGait, StanceTransition
+from tarsus.control.transition.stance_transition import StanceTransition
 from tarsus.control.walk.foot_targets import FootTargets
 from tarsus.control.walk.foothold import final_footholds
 from tarsus.control.walk.reference_governor import FootPrediction
 from tarsus.control.walk.state import POSITION_TOLERANCE, GaitState
-from tarsus.control.walk.step_timing import StepTiming, lift_delays
+from tarsus.control.walk.step_timing import StepTiming
 from tarsus.control.walk.stepper import stance_tolerance
 from tarsus.control.walk_state import TickState
 from tarsus.gait.stance.stance_geometry import sway_fraction
@@ -60,17 +60,19 @@ class TransitionExecutor:
     def __init__(self, initial: StanceTransition, foot_targets: FootTargets, *, scale: float = 1.0) -> None:
         self.scheduler, self.footholds = TransitionScheduler(initial), FootholdTransfer(initial)
         self.pose = PoseController(initial.posture)
-        self.timing = StepTiming(initial.parameters.gait, 1 / initial.cycle_timing.cycle_time)
+        self.timing = initial.timing
         self.current, self.lengthened = initial, 1.0
         self._foot_targets, self._scale = foot_targets, scale
-        # The gait for which all feet touch down, and the transition for which they step to new rest footholds.
-        self._next: NextGait | None = None
+        # The transition for which all feet touch down, as another gait begins by it, and the leg that lifts first then;
+        # the transition for which they step to new rest footholds.
+        self._next: StanceTransition | None = None
+        self._first_leg = 0
         self._active: StanceTransition | None = None
 
     @property
     def stances(self) -> list[tuple[StanceTransition, VelocityLimits]]:
         """Transitions whose limits hold: the present one, and one that is planned or for which feet land or step."""
-        pending = self.scheduler.planned or (self._active if self._next is None else self._next.transition)
+        pending = self.scheduler.planned or self._next or self._active
         return [(self.current, self.footholds.limits), *([(pending, pending.path_limits)] if pending else [])]
 
     @property
@@ -124,7 +126,7 @@ class TransitionExecutor:
         if self._next is None:
             return self.timing.stance_intervals(state)
         begins = self.timing.time_to_touchdown(state)
-        return begins, begins.max() + self._next.delays
+        return begins, begins.max() + self._next.lift_delays[self._first_leg]
 
     def _is_settled(self, state: GaitState) -> bool:
         """Return whether the last transition is over: posture reached, returning legs on the ground."""
@@ -173,7 +175,7 @@ class TransitionExecutor:
         """Begin a planned transition as soon as the standing feet allow it."""
         state, gait = now.gait, planned.parameters.gait
         # The steps get faster only after the transition.
-        frequency = min(self.timing.frequency, 1 / planned.cycle_timing.cycle_time)
+        frequency = min(self.timing.frequency, planned.timing.frequency)
         # At the present twist, the feet have to be able to step to their new rest footholds.
         fraction, _ = planned.stepping_limits.feasible_fraction(
             state.twist.value, stance_time=gait.duty_factor / frequency, duty_factor=gait.duty_factor
@@ -196,22 +198,20 @@ class TransitionExecutor:
 
     def _try_to_change_gait(self, planned: StanceTransition, now: TickState) -> None:
         """Let all feet touch down, if they may stand for so long; the leg that suits best then lifts first."""
-        cycle_time, gait = planned.cycle_timing.cycle_time, planned.parameters.gait
-        timing, delays = StepTiming(gait, 1 / cycle_time), lift_delays(gait, cycle_time)
-        ends = self.timing.time_to_touchdown(now.gait).max() + delays
+        ends = self.timing.time_to_touchdown(now.gait).max() + planned.lift_delays
         bounds = self._foot_targets.without_bounds(self.footholds.bounds_with(planned))
         bounds = self.footholds.shifted(np.minimum(bounds, planned.final_limits.bounds))
-        prediction = FootPrediction.of(now.gait, np.zeros(delays.shape), ends, timing.bandwidth)
+        prediction = FootPrediction.of(now.gait, np.zeros_like(ends), ends, planned.timing.bandwidth)
         over = prediction.excess(now.twist[None], bounds).max(axis=(1, 2, 3, 4))
         # Symmetric legs suit equally well but for rounding; the first of them lifts, on any machine.
         first = int((over <= over.min() + _ROUNDING).argmax())
         if over[first] <= POSITION_TOLERANCE:
-            self._next, self.scheduler.planned = NextGait(planned, timing, first, delays[first]), None
+            self._next, self._first_leg, self.scheduler.planned = planned, first, None
             self.footholds.restrict(planned.final_limits)
 
     def _try_to_move_body(self, active: StanceTransition, now: TickState) -> None:
         """Move the body once every foot is at its new rest foothold."""
-        if self.unstepped or self.timing.frequency > 1 / active.cycle_timing.cycle_time:
+        if self.unstepped or self.timing.frequency > active.timing.frequency:
             return
         bounds = self._foot_targets.without_bounds(active.path_limits.bounds)
         if self._stays_within(bounds, now, self.timing):
@@ -238,7 +238,7 @@ class TransitionExecutor:
     def _start_gait(self, planned: StanceTransition, first: int, state: GaitState) -> GaitState:
         """Start a gait; every foot is down."""
         self._begin(planned, state)
-        self.timing = StepTiming(planned.parameters.gait, 1 / planned.cycle_timing.cycle_time)
+        self.timing = planned.timing
         return self.timing.with_first_lift(state, first)
 
     # After a tick.
@@ -262,7 +262,7 @@ class TransitionExecutor:
             if goal != self.timing.frequency:
                 self.timing = self.timing.approach(goal, dt)
         elif state.down.all():
-            state = self._start_gait(self._next.transition, self._next.first_leg, state)
+            state = self._start_gait(self._next, self._first_leg, state)
         if settled and self.footholds.limits is not self.current.final_limits:
             self.footholds.complete(self.current.final_limits)
         return state

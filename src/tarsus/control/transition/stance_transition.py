@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -13,14 +14,14 @@ from tarsus.control.workspace.cycle_time import CycleTiming
 from tarsus.errors import UnreachableError
 from tarsus.gait.gait import Gait
 from tarsus.gait.stance.stance_geometry import SWING_HEIGHT, StanceGeometry, stance_geometry_of
-from tarsus.gait.stance.velocity_limits import VelocityLimits
+from tarsus.gait.stance.velocity_limits import VelocityLimits, stance_overhang
 from tarsus.kinematics.stance import stance_or_nan
 from tarsus.robot.robot import Robot
 
 if TYPE_CHECKING:
     from jaxtyping import Complex, Float
 
-__all__ = ["NextGait", "StanceTarget", "StanceTransition", "WalkParameters", "target_stance"]
+__all__ = ["StanceTarget", "StanceTransition", "WalkParameters", "target_stance"]
 
 # Fractions of a change of height that are tried where the whole of it has no foothold.
 _FRACTIONS = np.arange(7, 0, -1) / 8
@@ -176,23 +177,14 @@ class StanceTransition:
     keeps_posture: bool = False
     limitations: tuple[Limitation, ...] = ()
 
+    @cached_property
+    def timing(self) -> StepTiming:
+        """Its gait and step frequency."""
+        return StepTiming(self.parameters.gait, 1 / self.cycle_timing.cycle_time)
 
-class NextGait(NamedTuple):
-    """A gait that begins once all feet are on the ground.
-
-    Attributes
-    ----------
-    transition : StanceTransition
-        The transition that brings it.
-    timing : StepTiming
-        Its timing.
-    first_leg : int
-        The leg that lifts first.
-    delays : array, shape (legs,)
-        How long each foot stands before it lifts [s].
-    """
-
-    transition: StanceTransition
-    timing: StepTiming
-    first_leg: int
-    delays: Float[np.ndarray, "legs"]
+    @cached_property
+    def lift_delays(self) -> Float[np.ndarray, "legs legs"]:
+        """How long each foot stands as its gait starts with all feet down, by the leg that lifts first: rows [s]."""
+        duty_factor, offsets = self.parameters.gait.duty_factor, np.asarray(self.parameters.gait.offsets)
+        over = (stance_overhang(duty_factor) - 0.5) * duty_factor
+        return np.asarray(((offsets - offsets[:, None]) % 1 + over) * self.cycle_timing.cycle_time)

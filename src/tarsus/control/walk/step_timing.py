@@ -15,7 +15,7 @@ from tarsus.gait.stance.velocity_limits import stance_overhang
 if TYPE_CHECKING:
     from jaxtyping import Float
 
-__all__ = ["NextLift", "StepTiming", "lift_delays"]
+__all__ = ["NextLift", "StepTiming"]
 
 # The twist follows its target within about one stance: faster, and standing feet would be left behind.
 _TIME_CONSTANTS_PER_STANCE = 4.0
@@ -128,21 +128,3 @@ class NextLift:
         if not self._steps or any(map(is_not, steps, self._steps)):
             self._steps, self._clock = steps, min(timing.lift_clocks(state))
         return state.clock + timing.frequency * dt > self._clock
-
-
-def lift_delays(gait: Gait, cycle_time: float) -> Float[np.ndarray, "legs legs"]:
-    """Return how long each foot stands at the start of a gait, with all feet down: array, shape (legs, legs) [s].
-
-    Parameters
-    ----------
-    gait, cycle_time : Gait, float
-        Order of the steps; duration of a cycle [s].
-
-    Returns
-    -------
-    array
-        For each leg, in each row for the row's leg lifting off first.
-    """
-    offsets = np.asarray(gait.offsets)
-    over = (stance_overhang(gait.duty_factor) - 0.5) * gait.duty_factor
-    return np.asarray(((offsets - offsets[:, None]) % 1 + over) * cycle_time)
