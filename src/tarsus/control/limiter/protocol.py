@@ -63,7 +63,7 @@ class TwistGrant(NamedTuple):
 
     def at_most(self, fraction: float, *limitations: Limitation) -> TwistGrant:
         """Return the grant with a fraction no greater than another, and with limitations to report, if any."""
-        return self._replace(fraction=min(self.fraction, fraction), limitations=(*self.limitations, *limitations))
+        return TwistGrant(min(self.fraction, fraction), self.target, (*self.limitations, *limitations))
 
     def scaled(self, twist: Sequence[float]) -> list[float]:
         """Return a twist times the fraction."""

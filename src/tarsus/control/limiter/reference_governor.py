@@ -47,7 +47,7 @@ class GovernorLimiter:
         stays = not self._looks() if state.felt else self._target.tolist() == self._command
         if not stays or command != self._command or not all(map(is_, stance, self._stance)):
             self._command, self._stance, self._target = command, stance, self._governed(request, command)
-        return grant._replace(target=self._target)
+        return TwistGrant(grant.fraction, self._target, grant.limitations)
 
     def _governed(self, request: TwistRequest, command: list[float]) -> Float[np.ndarray, "3"]:
         """Return the twist to follow."""

@@ -91,6 +91,8 @@ class TransitionExecutor:
     @property
     def unstepped(self) -> tuple[int, ...]:
         """Legs of the gait whose feet have yet to step to new rest footholds; the body waits for them."""
+        if self._active is None:
+            return ()
         excluded, transferred = self.current.parameters.excluded, self.footholds.transferred.tolist()
         return tuple(leg for leg, done in enumerate(transferred) if not done and leg not in excluded)
 

@@ -42,6 +42,8 @@ def excluded_legs(command: Command, before: tuple[int, ...], legs: int) -> tuple
     InputError
         If the command names a leg that the robot does not have.
     """
+    if not (command.foot_targets or command.foot_velocities):
+        return before
     excluded = set(before)
     for leg, point in {**(command.foot_targets or {}), **(command.foot_velocities or {})}.items():
         require_leg_number("foot_targets", leg, legs)
@@ -226,7 +228,8 @@ class FootTargets:
         down : array of bool, shape (legs,)
             Feet that are not in a swing.
         """
-        self._motions = {leg: motion.step(time) for leg, motion in self._motions.items() if down[leg]}
+        if self._motions:
+            self._motions = {leg: motion.step(time) for leg, motion in self._motions.items() if down[leg]}
 
     def without_bounds(self, bounds: Float[np.ndarray, "legs 16"]) -> Float[np.ndarray, "legs 16"]:
         """Return the sides of the feet's polygons, infinite for the feet that do not step [m]."""

@@ -147,7 +147,7 @@ def _swing(
         speed = complex(*state.twist.value[:2].tolist())
         # Feet that make up for lost way travel farther in a stance.
         stance *= 1 + (inputs.felt.drift * speed.conjugate()).real / max(abs(speed) ** 2, 1e-6)
-    for leg in np.flatnonzero(~state.down).tolist():
+    for leg in [leg for leg, on in enumerate(state.down.tolist()) if not on]:
         late, since = float(state.lift_delay[leg]), since_lift[leg]
         phase, target = float(phases[leg]), complex(targets[leg])
         reached = min(max((since - late) / (swing - late), 0.0), 1.0)
