@@ -1,6 +1,7 @@
 """Legs that fail: found by measured joint angles or told, and what the robot does without them."""
 
 import dataclasses
+import math
 import re
 from pathlib import Path
 
