@@ -21,7 +21,7 @@ from tarsus.control.terrain.foot_contacts import FootContacts
 from tarsus.control.terrain.missing_ground import MissingGround
 from tarsus.control.terrain.reach import Reach
 from tarsus.control.terrain.roughness import Roughness
-from tarsus.control.terrain.support import Support, Tipping, along_gravity, holds
+from tarsus.control.terrain.support import Footing, Support, Tipping, along_gravity, holds
 from tarsus.control.walk.felt_feet import FeltFoot, FeltInputs, GroundUnder, travel_share
 from tarsus.control.walk.vertical_motion import _searching, _swinging
 from tarsus.control.walk_controller import WalkController
@@ -250,6 +250,43 @@ def test_support_slows_the_walk_down_only_where_feet_wait_for_long():
         support.step(stays=False, lifts=False, dt=0.02, swing_time=0.5)
     assert not support.waits
     assert support.pace == 0.0
+
+
+@pytest.mark.parametrize("ahead", [(1, 3, 5), range(6)])
+def test_the_body_shifts_over_feet_that_would_not_hold_it_as_others_lift_off(ahead):
+    controller = WalkController(tarsus.load_robot("makeyourpet"))
+
+    def walk(ticks, twist):
+        for _ in range(ticks):
+            roll, pitch, _ = np.asarray(controller.body.rpy).tolist()
+            felt = {"contacts": controller.contacts, "attitude": (roll, pitch), "joint_angles": controller.angles}
+            controller.step(twist, 0.01, readings=SensorReadings(**felt))
+
+    walk(10, (0.0, 0.0, 0.0))
+    state = controller._tick.gait
+    foot = state.foot + 0.13 * np.isin(np.arange(6), ahead)
+    controller._tick = controller._tick._replace(gait=state._replace(foot=foot, foothold=foot))
+    walk(40, (0.05, 0.0, 0.0))
+    assert "the feet on the ground do not hold the robot" in [each.cause for each in controller.limitations]
+    walk(160, (0.05, 0.0, 0.0))
+    before = float(controller.body.position[0])
+    walk(200, (0.05, 0.0, 0.0))
+    assert float(controller.body.position[0]) - before > 0.09
+
+
+@pytest.mark.parametrize(("feet", "shifts"), [([2.0, 2.0 + 1j, 3.0], 1.0), ([-2.0, -2.0 + 1j, -3.0], -1.0)])
+def test_a_body_shifts_towards_feet_and_not_far(feet, shifts):
+    support, footing, moved = Support(), Footing([complex(foot) for foot in feet], [True] * 3, 0j, 0.1), 0j
+    for _ in range(50):
+        support.step(stays=False, lifts=True, dt=0.01, swing_time=0.3)
+    for _ in range(300):
+        support.shift_over([0, 1, 2], footing, 0.01, scale=0.5)
+        moved += support.shift * 0.01
+    assert abs(moved) == pytest.approx(0.04, abs=1e-3)
+    assert moved.real * shifts > 0.03
+    support.shift_over([], footing, 0.01, scale=0.5)
+    support.shift_over([0], footing, 0.01, scale=0.5)
+    assert support.shift
 
 
 def test_ground_may_be_deeper_at_once_and_more_so_where_roughness_lasts():

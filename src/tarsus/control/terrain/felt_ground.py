@@ -198,7 +198,7 @@ class FeltGround:
             rates=body.rates,
             drift=body.drift + self.missing.held(passing),
             yaw_rate=body.heading.rate,
-            back=self.missing.back,
+            back=self.missing.back or self.support.shift,
             travel=travel,
             pace=self.support.pace,
             swing_height=float(state.posture.value[SWING_HEIGHT]) + body.roughness.swing_rise,
@@ -276,6 +276,9 @@ class FeltGround:
         legs = [leg for leg, on in enumerate(footing.down) if on and not (leg in missing.places or (due and due[leg]))]
         stays = (self.support.holds(legs, footing, anew=not self.body.since) and not (lifts and waits)) or due is None
         stays, lifts = stays and not condition.fallen, lifts and not condition.fallen
+        rests = all(on or leg in self._given[0] for leg, on in enumerate(footing.down))
+        unheld = lifts and rests and not (stays or waits or missing.places or condition.fallen)
+        self.support.shift_over(legs if unheld else [], footing, dt, scale=self.body.reach.scale)
         self.support.step(stays=stays, lifts=lifts, dt=dt, swing_time=swing_time, most=missing.pace)
 
     @property

@@ -27,6 +27,8 @@ _SINKS, _FOLLOWED, _LOW, _LASTS = 0.015, 0.6, 0.008, 0.2
 # the usual change between two looks, that at first [m], and so much of how much deeper ground may be; how fast feet
 # sink that roll or slip on slopes [m/s]; how fast the usual change is learnt [1/s].
 _SLIDES, _TIMES, _AT_FIRST, _DEEPER, _ROLLS, _LEARNT = 0.003, 4.0, 0.01, 0.5, 0.02, 3.0
+# How fast the body moves over feet that do not hold it yet [m/s], and how far at most [m].
+_SHIFTS, _FARTHEST = 0.05, 0.08
 HALTING = 0.5
 """Below this pace the robot waits for support."""
 
@@ -227,12 +229,15 @@ class Support:
         Rate of steps and twist, 0 to 1.
     waits, held : bool
         Whether feet that are due stay on the ground; whether the feet that bear load hold the robot.
+    shift : complex
+        Velocity of the body over its feet, in the heading frame [m/s].
     """
 
     def __init__(self) -> None:
         self.pace, self.waits = 1.0, False
         self._waited = self._unsupported = 0.0
         self._bearing, self.held = list[int](), False
+        self.shift, self._shifted = 0j, 0.0
 
     @property
     def halts(self) -> bool:
@@ -250,6 +255,22 @@ class Support:
         if anew or legs != self._bearing:
             self._bearing, self.held = legs, holds([footing.places[leg] for leg in legs], footing.centre)
         return self.held
+
+    def shift_over(self, legs: list[int], footing: Footing, dt: float, *, scale: float) -> None:
+        """Shift the body over feet that do not hold it yet, as all have come to rest: it would wait for them for ever.
+
+        Parameters
+        ----------
+        legs, footing, dt : list of int, Footing, float
+            Legs that stay as others lift off, none for no shift; all feet; time since the last call [s].
+        scale : float
+            By how much lengths and speeds are smaller than given, on short legs, 0 to 1.
+        """
+        self.shift, self._shifted = 0j, self._shifted * bool(legs)
+        if legs and self.halts and self._shifted < scale * _FARTHEST:
+            way = sum(footing.places[leg] for leg in legs) / len(legs) - footing.centre
+            self.shift = scale * _SHIFTS * way / max(abs(way), 1e-9)
+            self._shifted += abs(self.shift) * dt
 
     def step(self, *, stays: bool, lifts: bool, dt: float, swing_time: float, most: float = 1.0) -> None:
         """Decide for a tick.
