@@ -174,6 +174,16 @@ def test_a_malformed_reading_of_one_leg_is_rejected_for_that_leg_only(channel, v
     assert getattr(found, channel) == (*good[:2], None, *good[3:])
 
 
+@pytest.mark.parametrize(
+    ("force", "passes"),
+    [((-0.9, 0.2, -1.1), True), ((0.0, 0.5, -0.7), True), ((0.0, 0.5, -0.8), False), ((0.1, 0.0, -0.4), False)],
+)
+def test_friction_may_pull_a_foot_down_on_the_side_of_an_obstacle(force, passes):
+    forces = np.zeros((6, 3))
+    forces[2] = WEIGHT * np.array(force)
+    assert (not validated(forces=forces).rejected) is passes
+
+
 def test_a_channel_with_every_leg_rejected_is_none():
     validator = ReadingsValidator(STRIDER)
     found = validated(validator, contacts=[None] * 6, torques=np.full((6, 3), np.nan))

@@ -62,7 +62,7 @@ def channels_of(robot: Robot) -> dict[str, Any]:
         "contacts": _ContactChannel(legs),
         "attitude": _AttitudeChannel(),
         "joint_angles": _JointAngleChannel(legs, np.asarray(robot.limits), fastest),
-        "forces": _VectorChannel("forces", legs, (pull, force), beyond=_TOO_HEAVY, accept_z=True),
+        "forces": _ForceChannel("forces", legs, (pull, force), beyond=_TOO_HEAVY, accept_z=True),
         "torques": _VectorChannel("torques", legs, (-torque, torque), beyond=_TOO_STRONG),
         **{name: _VectorChannel(name, legs) for name in _FINITE_CHANNELS},
         "angular_rates": _AngularRateChannel(["angular_rates"]),
@@ -240,10 +240,21 @@ class _VectorChannel(_LegChannel):
     def _read_leg(self, leg: int, value: Any) -> Vector | str:
         alone = as_number(value) if self._accept_z and type(value) is not list else math.nan
         vector = as_vector(value) or _NOT_NUMBERS if math.isnan(alone) else (0.0, 0.0, alone)
-        of_leg = slice(3 * leg, 3 * leg + 3)
-        if _between(self._low[of_leg], vector, self._high[of_leg]):
+        if self._is_plausible(leg, vector):
             return vector
         return self._beyond if all(map(math.isfinite, vector)) else "not finite numbers"
+
+    def _is_plausible(self, leg: int, vector: Vector) -> bool:
+        of_leg = slice(3 * leg, 3 * leg + 3)
+        return _between(self._low[of_leg], vector, self._high[of_leg])
+
+
+class _ForceChannel(_VectorChannel):
+    """Forces on feet: friction on the side of an obstacle pulls a foot down by as much as that pushes it aside."""
+
+    def _is_plausible(self, leg: int, vector: Vector) -> bool:
+        x, y, z = vector
+        return super()._is_plausible(leg, (x, y, max(z, min(z + math.hypot(x, y), 0.0))))
 
 
 class _JointAngleChannel(_VectorChannel):

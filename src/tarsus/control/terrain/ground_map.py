@@ -216,8 +216,9 @@ class GroundMap:
         lowest = lowest_near(self._lies, np.array(place), within=self._scale * _EDGE)
         if lowest >= self._floor(np.array(place)):
             return False
-        found = np.append(on_way(self._lies, 0j, place), lowest)
-        return bool((found[:-2] - found[2:]).max() > _CLIFF * abs(place) / 4)
+        way = on_way(self._lies, 0j, place)
+        found = np.append(way, lowest)
+        return bool((found[:-2] - found[2:]).max() > _CLIFF * abs(place) * 2 / (len(way) - 1))
 
     def under(
         self, start: complex, foothold: complex, elevation: float, room: tuple[float | None, float], *, clears: bool
