@@ -74,6 +74,7 @@ truth: $(VENV)/.dev
 	$(BIN)/python docs/gaits_on_ground.py
 	$(BIN)/python docs/other_presets.py
 	$(BIN)/python docs/random_robots.py
+	$(BIN)/python docs/long_walks.py
 	$(BIN)/python docs/other_physics.py
 	$(BIN)/python docs/seen_ground.py
 	$(BIN)/python docs/cross_slopes.py
