@@ -69,34 +69,34 @@ def test_a_joint_that_is_stuck_where_its_command_moves_little_is_found_too():
     assert monitor.failed == {4: 0}
 
 
-@pytest.mark.parametrize(("torque", "after"), [(0.0, (5, 20)), (2.0, (150, 250))])
-@pytest.mark.parametrize("leg", [2, 5])
-def test_measured_torques_tell_an_idle_servo_from_a_leg_that_is_caught(torque, after, leg):
+# Nothing is told by the torque of a servo whose stall torque is unknown, here that of leg 5.
+@pytest.mark.parametrize(
+    ("leg", "torque", "after"), [(2, 0.0, (5, 20)), (2, 2.0, None), (5, 0.0, (20, 40)), (5, 2.0, (20, 40))]
+)
+def test_measured_torques_tell_an_idle_servo_from_a_leg_that_is_caught(leg, torque, after):
     stall = np.full((6, 3), 2.0)
-    # Nothing is told by the torque of a servo whose stall torque is unknown.
-    stall[5, 1], after = np.nan, after if leg == 2 else (20, 40)
+    stall[5, 1] = np.nan
     monitor, measured, torques = ServoMonitor(stall), np.zeros((6, 3)), [(1.0, 1.0, 1.0)] * 6
     measured[leg, 1], torques[leg] = -0.45, (torque,) * 3
     ticks = 0
-    while not monitor.failed:
+    while not monitor.failed and ticks < 600:
         look(monitor, np.zeros((6, 3)), measured.tolist(), torques=torques)
         ticks += 1
-    assert monitor.failed == {leg: 1}
-    assert after[0] < ticks < after[1]
+    assert monitor.failed == ({leg: 1} if after else {})
+    assert after is None or after[0] < ticks < after[1]
 
 
 @pytest.mark.parametrize(
-    ("joint", "error", "torque", "at_most"),
-    [(1, 0.8, None, 10), (1, -0.8, None, 30), (2, 0.8, None, 30), (1, 0.8, 2.0, 210)],
+    ("joint", "error", "at_most"),
+    [(1, 0.8, 10), (1, -0.8, 30), (2, 0.8, 30)],
 )
-def test_a_femur_that_gives_way_under_the_robot_is_found_before_it_tips(joint, error, torque, at_most):
-    monitor, measured = ServoMonitor(np.full((6, 3), 2.0)), np.zeros((6, 3))
+def test_a_femur_that_gives_way_under_the_robot_is_found_before_it_tips(joint, error, at_most):
+    monitor, measured = ServoMonitor(UNKNOWN), np.zeros((6, 3))
     measured[3, joint] = error
     ticks = 0
     look(monitor, np.zeros((6, 3)), np.zeros((6, 3)).tolist())
-    while not monitor.failed:
-        torques = torque and [(torque,) * 3] * 6
-        look(monitor, np.zeros((6, 3)), measured.tolist(), torques=torques, contacts=[False] * 6)
+    while not monitor.failed and ticks < 600:
+        look(monitor, np.zeros((6, 3)), measured.tolist(), contacts=[False] * 6)
         ticks += 1
     assert monitor.failed == {3: joint}
     assert 0.5 * at_most < ticks < at_most + 10
