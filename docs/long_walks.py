@@ -24,6 +24,8 @@ SHOWN = ("smooth60", "blocks60", "smooth100", "blocks100")
 TIME, RADIUS, PACE = 180.0, 0.7, 0.5
 # A robot has stopped that turns by less than this share of what is commanded in so many seconds.
 STOPPED, WITHIN = 0.05, 24.0
+# What may befall a robot, and how the table says that.
+MISHAPS = {"touched": "touched", "fell": "fell", "failed": "with a servo called failed"}
 
 
 class Job(NamedTuple):
@@ -67,7 +69,7 @@ def walk(job: Job) -> Outcome:
     time = TICK * (len(turned) - 1)
     last = [limitation for limitation in controller.output.limitations if limitation.cause]
     stopped = time < TIME - TICK / 2
-    cause = f"{last[-1].cause}" if stopped and last else ""
+    cause = str(last[-1].cause) if stopped and last else ""
     failed = bool(controller.leg_failures.failed)
     return Outcome(turned[-1] / (rate * time), time if stopped else math.inf, cause, touched, fell, failed)
 
@@ -80,9 +82,8 @@ def table(found: dict[Job, Outcome], robots: list[str], grounds: list[str]) -> s
         for robot in robots:
             walks = [outcome for job, outcome in found.items() if job[:2] == (robot, ground)]
             causes = [f"{each.cause} after {each.stopped:.0f} s" for each in walks if math.isfinite(each.stopped)]
-            counts = {name: sum(getattr(each, name) for each in walks) for name in ("touched", "fell", "failed")}
-            names = {"touched": "touched", "fell": "fell", "failed": "with a servo called failed"}
-            notes = [f"{count} {names[name]}" for name, count in counts.items() if count]
+            counts = {name: sum(getattr(each, name) for each in walks) for name in MISHAPS}
+            notes = [f"{count} {MISHAPS[name]}" for name, count in counts.items() if count]
             way = f"{mean(each.way for each in walks):.2f} of {len(walks)}"
             cells.append("<br>".join([", ".join([way, *notes]), *causes]))
         lines.append(f"| {ground} | {' | '.join(cells)} |")

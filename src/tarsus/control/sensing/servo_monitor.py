@@ -105,8 +105,9 @@ class ServoMonitor:
         # Of femurs that were off when joints were last looked at: what has counted since the foot touched or the femur
         # was not held up, and its lowest angle since [rad].
         self._raised = dict[int, tuple[float, float]]()
-        # What was measured and commanded, since joints were last looked at for whether they are stuck.
-        self._compared: list[tuple[Float[np.ndarray, "legs 3"], Float[np.ndarray, "legs 3"]]] = []
+        # Least and greatest of what was measured and commanded, since joints were last looked at for whether they are
+        # stuck.
+        self._ranges: tuple[Float[np.ndarray, "2 legs 3"], Float[np.ndarray, "2 legs 3"]] | None = None
         self._last: Float[np.ndarray, "legs 3"] | None = None
 
     def step(self, commanded: Float[np.ndarray, "legs 3"], valid: ValidReadings, dt: float) -> None:
@@ -188,18 +189,20 @@ class ServoMonitor:
         dt: float,
     ) -> Bool[np.ndarray, "legs 3"] | None:
         """Return which joints have not moved with their commands, at the end of a time in which any is so."""
-        self._compared.append((measured, commanded))
+        both = np.stack([measured, commanded])
+        low, high = self._ranges or (both, both)
+        self._ranges = low, high = np.minimum(low, both), np.maximum(high, both)
         self._time += dt
         if self._time < _WITHIN:
             return None
-        moved, wanted = np.ptp(self._compared, axis=0)
+        moved, wanted = high - low
         with np.errstate(invalid="ignore"):
             stuck: np.ndarray = (wanted > _COMMANDED) & (moved < _SHARE * wanted)
             pressed = np.flatnonzero((stuck & (measured > commanded))[:, _FEMUR]).tolist()
         # The ground may stall a femur that presses its foot down: what it does once that has lifted tells.
         if any(leg in self._touched and self._torque(valid, leg, _FEMUR) > _IDLE for leg in pressed):
             return None
-        self._compared, self._time = [], 0.0
+        self._ranges, self._time = None, 0.0
         return stuck if stuck.any() else None
 
 
