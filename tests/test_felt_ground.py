@@ -551,6 +551,9 @@ def test_a_robot_tips_that_sinks_fast_at_a_foot_that_is_low():
     # It is over once the body has come back.
     assert tipped([*fast, 0.11]) in (0, 5)
     assert tipped([*fast, 0.03]) is None
+    # A body that has come to rest does not tip any more, else the walk would wait for ever.
+    assert tipped([*fast, *[0.12] * 20]) in (0, 5)
+    assert tipped([*fast, *[0.12] * 100]) is None
 
 
 def test_a_robot_that_tips_for_long_has_met_an_edge():

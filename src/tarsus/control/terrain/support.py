@@ -21,8 +21,9 @@ _GRACE = 0.15
 # Least angle by which the centre of mass is inside the support polygon, as seen from it [rad].
 _LEAST_ANGLE = 0.02
 # How far a body sinks at a foot that gives way, at least [m], within which time [s]; how far below the expected ground
-# such a foot is [m]; for how long a robot has tipped that is at the edge of a hole, at least [s].
-_SINKS, _FOLLOWED, _LOW, _LASTS = 0.015, 0.6, 0.008, 0.2
+# such a foot is [m]; for how long a robot has tipped that is at the edge of a hole, at least [s]; how soon a body that
+# stays tilted has settled [s].
+_SINKS, _FOLLOWED, _LOW, _LASTS, _SETTLES = 0.015, 0.6, 0.008, 0.2, 2.0
 # How far a foot that bears load sinks against the others that slides over an edge, at least [m], besides so many times
 # the usual change between two looks, that at first [m], and so much of how much deeper ground may be; how fast feet
 # sink that roll or slip on slopes [m/s]; how fast the usual change is learnt [1/s].
@@ -171,7 +172,8 @@ class Tipping:
         if tilt is None:
             self.leg = self._before = None
             return
-        share, (roll, pitch) = min(dt / _FOLLOWED, 1.0) * (self.leg is None), self._before or tilt
+        follows = _FOLLOWED if self.leg is None else _SETTLES
+        share, (roll, pitch) = min(dt / follows, 1.0), self._before or tilt
         self._before = roll, pitch = roll + share * (tilt[0] - roll), pitch + share * (tilt[1] - pitch)
         sunk = [sunk_at(place, tilt, self._before) for place in footing.places]
         low = [leg for leg, on in enumerate(footing.down) if on and depths[leg] > self._scale * _LOW]
