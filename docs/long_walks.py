@@ -67,7 +67,8 @@ def walk(job: Job) -> Outcome:
         if tick > ticks and turned[-1] - turned[-ticks] < STOPPED * rate * WITHIN:
             break
     time = TICK * (len(turned) - 1)
-    last = [limitation for limitation in controller.output.limitations if limitation.cause]
+    # What names a leg says more than what holds for the robot as a whole.
+    last = sorted((each for each in controller.output.limitations if each.cause), key=lambda each: bool(each.leg))
     stopped = time < TIME - TICK / 2
     cause = str(last[-1].cause) if stopped and last else ""
     failed = bool(controller.leg_failures.failed)
