@@ -19,7 +19,7 @@ import numpy as np
 import tarsus
 from estimated_contacts import JOINTS
 from page_tables import Several, measured, write_tables
-from rough_ground import LIES, PAGE, ROBOTS, blocks, switches
+from rough_ground import PAGE, ROBOTS, Watch, blocks, switches
 from tarsus.simulation import Sensor, SimulatedPlant, terrain
 from tarsus.simulation.terrain.surface import surface
 
@@ -120,21 +120,17 @@ def drive(
 ) -> tuple[Outcome, list[float]]:
     """Drive a robot by twists for some time each; return the outcome, a fall or none, and where it was along x [m]."""
     plant, controller = SimulatedPlant(robot, terrain=ground, sensors=sensors), tarsus.RobotController(robot)
-    touched, lying, tilt, yaw, turned, way = 0.0, 0.0, 0.0, 0.0, 0.0, [0.0]
     plant.start(controller.output)
+    watch, way = Watch(plant), [0.0]
     for twist, time in commands:
         for _ in range(round(time / dt)):
             readings = plant.step(controller.output, dt)
-            state = plant.state
-            roll, pitch, now = np.asarray(state.body.rpy).tolist()
-            tilt, touched = max(tilt, math.hypot(roll, pitch)), touched + dt * state.body_touches
-            turned, yaw = turned + math.remainder(now - yaw, math.tau), now
-            lying = lying + dt if state.body_touches else 0.0
-            way.append(float(state.body.position[0]))
-            if lying > LIES or tilt > math.pi / 4:
-                return Outcome("fell", touched, math.degrees(tilt)), way
+            watch.look(dt)
+            way.append(float(plant.state.body.position[0]))
+            if watch.fell:
+                return Outcome("fell", watch.touched, math.degrees(max(watch.tilts))), way
             controller.step(twist, dt, readings)
-    return Outcome("", touched, math.degrees(tilt), math.degrees(abs(turned))), way
+    return Outcome("", watch.touched, math.degrees(max(watch.tilts)), math.degrees(abs(watch.turned))), way
 
 
 def walk(job: Job) -> Outcome:

@@ -16,7 +16,7 @@ import numpy as np
 
 import tarsus
 from page_tables import Several, measured, write_tables
-from rough_ground import GROUNDS, PAGE, ROBOTS, WAY
+from rough_ground import GROUNDS, PAGE, ROBOTS, WAY, Watch
 from tarsus.robot.robot import JOINTS
 from tarsus.simulation import SensorSuite, SimulatedPlant
 
@@ -61,20 +61,18 @@ def walk(job: Walk) -> Found:
     plant = SimulatedPlant(robot, terrain=GROUNDS[job.ground](job.seed), sensors=job.sensors, seed=job.seed)
     controller = tarsus.RobotController(robot)
     plant.start(controller.output)
-    found, steepest, touched, start, time = math.inf, 0.0, False, (0.0, 0.0), job.time or WAY / speed
+    found, watch, start, time = math.inf, Watch(plant), (0.0, 0.0), job.time or WAY / speed
     for tick in range(round(time / DT)):
         if job.kind and tick == round(job.at / DT):
             break_servo(plant, 3 * job.leg + job.joint, limp=job.kind == "limp")
         readings = plant.step(controller.output, DT)
-        state = plant.state
-        steepest = max(steepest, math.hypot(*np.asarray(state.body.rpy).tolist()[:2]))
-        touched = touched or bool(state.body_touches)
+        watch.look(DT)
         controller.step((speed, 0.0, 0.0), DT, readings)
         if job.leg in controller.leg_failures.failed and math.isinf(found):
-            found, start = tick * DT - job.at, (tick * DT, float(state.body.position[0]))
+            found, start = tick * DT - job.at, (tick * DT, float(plant.state.body.position[0]))
     others = bool(controller.leg_failures.failed.keys() - ({job.leg} if job.kind else set()))
     pace = (float(plant.state.body.position[0]) - start[1]) / (time - start[0])
-    return Found(found, others, pace, steepest, touched)
+    return Found(found, others, pace, max(watch.tilts), watch.touched > 0.0)
 
 
 def break_servo(plant: SimulatedPlant, number: int, *, limp: bool) -> None:

@@ -12,11 +12,9 @@ import math
 from statistics import mean
 from typing import NamedTuple
 
-import numpy as np
-
 import tarsus
 from page_tables import Several, measured, write_tables
-from rough_ground import GROUNDS, LIES, PAGE, ROBOTS, TICK
+from rough_ground import GROUNDS, PAGE, ROBOTS, TICK, Watch
 from tarsus.simulation import SimulatedPlant
 
 SHOWN = ("smooth60", "blocks60", "smooth100", "blocks100")
@@ -55,14 +53,11 @@ def walk(job: Job) -> Outcome:
     speed = PACE * tarsus.WalkController(robot).top_speed((1, 0, 0))
     rate, ticks = speed / RADIUS, round(WITHIN / TICK)
     plant.start(controller.output)
-    turned, lying, touched, fell = [0.0], 0.0, False, False
+    watch, turned = Watch(plant), [0.0]
     for tick in range(round(TIME / TICK)):
         readings = plant.step(controller.output, TICK)
-        state, before = plant.state, turned[-1]
-        roll, pitch, yaw = np.asarray(state.body.rpy).tolist()
-        turned.append(before + math.remainder(yaw - before, math.tau))
-        touched, lying = touched or state.body_touches, lying + TICK if state.body_touches else 0.0
-        fell = fell or lying > LIES or math.hypot(roll, pitch) > math.pi / 4
+        watch.look(TICK)
+        turned.append(watch.turned)
         controller.step((speed, 0.0, rate), TICK, readings)
         if tick > ticks and turned[-1] - turned[-ticks] < STOPPED * rate * WITHIN:
             break
@@ -72,7 +67,9 @@ def walk(job: Job) -> Outcome:
     stopped = time < TIME - TICK / 2
     cause = str(last[-1].cause) if stopped and last else ""
     failed = bool(controller.leg_failures.failed)
-    return Outcome(turned[-1] / (rate * time), time if stopped else math.inf, cause, touched, fell, failed)
+    return Outcome(
+        turned[-1] / (rate * time), time if stopped else math.inf, cause, watch.touched > 0.0, watch.fell, failed
+    )
 
 
 def table(found: dict[Job, Outcome], robots: list[str], grounds: list[str]) -> str:

@@ -104,6 +104,24 @@ class Outcome(NamedTuple):
     steepest: float
 
 
+class Watch:
+    """What befalls a robot: its tilts and how far it turns [rad], how long its body is on the ground [s], falls."""
+
+    def __init__(self, plant: SimulatedPlant) -> None:
+        self.tilts: list[float] = []
+        self.turned, self.touched, self.fell, self._plant = 0.0, 0.0, False, plant
+        self._lying, self._yaw = 0.0, float(plant.state.body.rpy[2])
+
+    def look(self, dt: float) -> None:
+        """Take note of a tick."""
+        roll, pitch, yaw = np.asarray(self._plant.state.body.rpy).tolist()
+        lies = dt * self._plant.state.body_touches
+        self.tilts.append(math.hypot(roll, pitch))
+        self.turned, self._yaw = self.turned + math.remainder(yaw - self._yaw, math.tau), yaw
+        self.touched, self._lying = self.touched + lies, (self._lying + lies) * bool(lies)
+        self.fell = self.fell or self._lying > LIES or self.tilts[-1] > math.pi / 4
+
+
 def walk(job: tuple[str, str, str, int]) -> Outcome:
     """Return the outcome of one walk."""
     name, ground, key, seed = job
@@ -122,28 +140,22 @@ def walk(job: tuple[str, str, str, int]) -> Outcome:
 def walked_on(plant: SimulatedPlant, controller: tarsus.RobotController, twist: np.ndarray, time: float) -> Outcome:
     """Return the outcome of a straight walk, for so long, of a robot that has started."""
     speed, output, dt = float(np.linalg.norm(twist)), controller.output, TICK
-    start, tilts, slip, lying, touched, fell = np.asarray(plant.state.body.position), [], 0.0, 0.0, False, False
-    ticks = round(time / dt)
+    start, slip, watch, ticks = np.asarray(plant.state.body.position), 0.0, Watch(plant), round(time / dt)
     for _ in range(ticks):
         readings = plant.step(output, dt)
-        state = plant.state
-        roll, pitch, _ = np.asarray(state.body.rpy).tolist()
-        tilts.append(math.hypot(roll, pitch))
-        slip += float(state.slip_speeds.mean()) * dt
-        lying = lying + dt if state.body_touches else 0.0
-        touched = touched or state.body_touches
-        fell = lying > LIES or tilts[-1] > math.pi / 4
-        if fell:
+        watch.look(dt)
+        slip += float(plant.state.slip_speeds.mean()) * dt
+        if watch.fell:
             break
         output = controller.step(twist.tolist(), dt, readings)
     way = float((plant.state.body.position - start) @ twist) / speed
     return Outcome(
         way / (speed * dt * ticks),
-        math.degrees(math.sqrt(np.mean(np.square(tilts)))),
+        math.degrees(math.sqrt(np.mean(np.square(watch.tilts)))),
         slip / max(way, 1e-3),
-        touched,
-        fell,
-        math.degrees(max(tilts)),
+        watch.touched > 0.0,
+        watch.fell,
+        math.degrees(max(watch.tilts)),
     )
 
 
