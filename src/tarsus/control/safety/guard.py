@@ -62,6 +62,8 @@ class Guard:
     ----------
     bounds : GuardBounds
         The bounds.
+    state : GuardState
+        What it does with the commands.
     counts : mapping of InterventionKind to int
         How many interventions of each kind began; one that lasts several ticks counts once.
     time : float
@@ -102,27 +104,24 @@ class Guard:
         self.time = self._pending = 0.0
         self._log = InterventionLog(int(log_size))
         self.counts = self._log.counts
-        self._state = GuardState.PASSING
+        self.state = GuardState.PASSING
         self._time_at_rest = 0.0
         self._sit_down: SitDown | None = None
         self._seated = self._reset_requested = False
         self._last_command: list[float] | None = None
         self._started = start is not None
         if start is not None:
-            self._joints.start(self._checked_start(start), 0.0)
+            self._start_at(start)
 
-    def _checked_start(self, start: Float[Array, "legs 3"]) -> list[float]:
-        angles = read_angles(start, self._joints.names)
-        violations = [angles] if isinstance(angles, Intervention) else self._joints.limit_violations(angles)
-        if isinstance(angles, Intervention) or violations:
+    def _start_at(self, start: Float[Array, "legs 3"]) -> None:
+        violations: list[Intervention] = []
+        angles = read_angles(start, self._joints.names, violations)
+        if angles is not None:
+            violations += self._joints.limit_violations(angles)
+        if angles is None or violations:
             reasons = "; ".join(violation.text() for violation in violations)
             raise InputError(f"start must be an array of finite angles within the limits, shape (legs, 3): {reasons}")
-        return angles
-
-    @property
-    def state(self) -> GuardState:
-        """Current state of the guard."""
-        return self._state
+        self._joints.start(angles, 0.0)
 
     @property
     def log(self) -> tuple[Intervention, ...]:
@@ -131,7 +130,7 @@ class Guard:
 
     def summary(self) -> str:
         """Return the counts and the worst intervention of each kind as text, in mm and degrees."""
-        return self._log.summary(self.time, self._state)
+        return self._log.summary(self.time, self.state)
 
     def reset(self) -> None:
         """Let the guard recover to the next command that violates no bound, however far away it is.
@@ -139,7 +138,7 @@ class Guard:
         Each joint moves on its own at the fraction `GuardBounds.recovery_speed` of its speed. Feet in stance may drag
         if the command is far from the held angles.
         """
-        self._reset_requested = self._state in (GuardState.HOLDING, GuardState.SITTING)
+        self._reset_requested = self.state in (GuardState.HOLDING, GuardState.SITTING)
 
     def check(self, angles: Any, dt: float, contacts: Any = None, body: Pose | None = None) -> GuardOutput:
         """Check a command and return the joint angles to send.
@@ -160,52 +159,45 @@ class Guard:
         GuardOutput
             The joint angles to send, and the violations of the command.
         """
-        passed, violations = read_time_step(dt, self.bounds)
-        self._pending += passed
+        violations: list[Intervention] = []
+        self._pending += read_time_step(dt, self.bounds, violations)
         step = self._pending if self._pending >= self.bounds.min_time_step else 0.0
         self.time, self._pending = self.time + step, self._pending - step
-        parsed = read_angles(angles, self._joints.names)
-        command = None if isinstance(parsed, Intervention) else parsed
-        if isinstance(parsed, Intervention):
-            violations.append(parsed)
-        else:
-            violations += self._joints.limit_violations(parsed)
-            if step > 0 and self._state is GuardState.PASSING and self._started:
-                violations += self._joints.motion_violations(parsed, step)
-            violations += self._feet_violations(parsed, contacts, body)
+        command = read_angles(angles, self._joints.names, violations)
+        if command is not None:
+            violations += self._joints.limit_violations(command)
+            if step > 0 and self.state is GuardState.PASSING and self._started:
+                violations += self._joints.motion_violations(command, step)
+            violations += self._feet_violations(command, contacts, body)
         if not self._started and violations:
             self._start_in_stance()
         elif step > 0:
             self._advance(command, step, violations)
             self._last_command = command
-        elif self._state is not GuardState.HOLDING:
+        elif self.state is not GuardState.HOLDING:
             self._hold()
         return self._output(violations)
 
     def _feet_violations(self, command: list[float], contacts: Any, body: Pose | None) -> list[Intervention]:
         """Return the violations of contacts and body pose if these are invalid, else those of the feet."""
-        stance = None if contacts is None else read_contacts(contacts, self._robot.legs)
-        up = None if body is None else read_up(body)
-        if isinstance(stance, Intervention) or isinstance(up, Intervention):
-            return [found for found in (stance, up) if isinstance(found, Intervention)]
-        return self._feet.violations(command, stance, up)
+        invalid: list[Intervention] = []
+        stance = None if contacts is None else read_contacts(contacts, self._robot.legs, invalid)
+        up = None if body is None else read_up(body, invalid)
+        return invalid or self._feet.violations(command, stance, up)
 
     def _start_in_stance(self) -> None:
         """Start in the default stance because the first command is invalid; without a stance, at zero angles."""
         with suppress(TarsusError):
-            solution = inverse_kinematics(self._robot, default_stance(self._robot))
-            angles = read_angles(solution.angles, self._joints.names)
-            if not isinstance(angles, Intervention) and not self._joints.limit_violations(angles):
-                self._joints.start(angles, 0.0)
+            self._start_at(inverse_kinematics(self._robot, default_stance(self._robot)).angles)
         self._started = True
         self._hold()
 
     def _advance(self, command: list[float] | None, step: float, violations: list[Intervention]) -> None:
         """Pass the command, recover, or hold; a valid command too far away to recover adds a violation."""
         if command is None or violations:
-            if self._state in (GuardState.PASSING, GuardState.RECOVERING):
+            if self.state in (GuardState.PASSING, GuardState.RECOVERING):
                 self._hold()
-        elif self._state is GuardState.PASSING:
+        elif self.state is GuardState.PASSING:
             if self._started:
                 self._joints.send(command, step)
             else:
@@ -219,7 +211,7 @@ class Guard:
         self._stay(step, gap=any(found.kind is InterventionKind.TIME_GAP for found in violations))
 
     def _hold(self) -> None:
-        self._state, self._sit_down = GuardState.HOLDING, None
+        self.state, self._sit_down = GuardState.HOLDING, None
         self._reset_requested, self._seated, self._time_at_rest = False, False, 0.0
         self._feet.reset_distances()
 
@@ -228,7 +220,7 @@ class Guard:
         if self._reset_requested:
             return True
         distance, joint = self._joints.distance(command)
-        recovering = self._state is GuardState.RECOVERING
+        recovering = self.state is GuardState.RECOVERING
         # Hysteresis: twice the distance while recovering.
         bound = (2 if recovering else 1) * self.bounds.recovery_distance
         if distance > bound:
@@ -241,12 +233,12 @@ class Guard:
         return recovering or self._recover == "near"
 
     def _recover_to(self, command: list[float], step: float) -> None:
-        self._state, self._sit_down = GuardState.RECOVERING, None
+        self.state, self._sit_down = GuardState.RECOVERING, None
         # The velocity of the command is unknown before its second tick.
         if self._last_command is None:
             self._joints.brake(step)
         elif self._joints.recover(self._last_command, command, step):
-            self._state = GuardState.PASSING
+            self.state = GuardState.PASSING
             self._feet.accept()
 
     def _stay(self, step: float, *, gap: bool) -> None:
@@ -254,16 +246,16 @@ class Guard:
         if self._sit_down is not None and not gap and self._sit_down.step(step):
             return
         if self._sit_down is not None:
-            self._state, self._sit_down, self._seated = GuardState.HOLDING, None, not gap
+            self.state, self._sit_down, self._seated = GuardState.HOLDING, None, not gap
         self._joints.brake(step)
         if gap:
             self._joints.end_gap()
         self._time_at_rest = self._time_at_rest + step if self._joints.at_rest and not gap else 0.0
         if self._policy == "sit" and not self._seated and self._time_at_rest > self.bounds.sit_delay:
-            self._state = GuardState.SITTING
+            self.state = GuardState.SITTING
             self._sit_down = SitDown(self._robot, self.bounds, self._joints, stance=self._feet.stance, up=self._feet.up)
 
     def _output(self, violations: list[Intervention]) -> GuardOutput:
         interventions = self._log.record(violations, self.time)
         angles = read_only(np.array(self._joints.angles).reshape(self._robot.legs, 3))
-        return GuardOutput(angles, self._state is GuardState.PASSING, self._state, self.time, interventions)
+        return GuardOutput(angles, self.state is GuardState.PASSING, self.state, self.time, interventions)
