@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Self
 
 import numpy as np
 
+from tarsus.gait.branch import branches
 from tarsus.gait.swing import horizontal_profile, vertical_profile
 from tarsus.kinematics.ground import points_in_body
 from tarsus.kinematics.pose import Pose
@@ -25,7 +26,7 @@ from tarsus.robot.joint_limits import JointLimits
 from tarsus.robot.robot import Robot
 
 if TYPE_CHECKING:
-    from jaxtyping import Bool, Float, Int
+    from jaxtyping import Bool, Float
 
 __all__ = ["GRID", "Stage"]
 
@@ -125,25 +126,18 @@ class Stage:
             angles[:, self.cartesian] = self._solve(fractions)[:, self.cartesian]
         return angles
 
-    @cached_property
-    def _branches(self) -> Int[np.ndarray, "legs 2"]:
-        """The solution of inverse kinematics that each leg starts with: knee and facing, as in `solve_triangle`."""
-        g, femur, tibia = self.robot.geometry, self.angles[:, 1], self.angles[:, 2]
-        ahead = g.coxa + g.femur * np.cos(femur) + g.tibia * np.cos(femur + tibia)
-        return np.where(np.stack([np.sin(tibia) > 0, ahead < 0], axis=-1), -1, 1)
-
     def _solve(self, fractions: Float[np.ndarray, "n"]) -> Float[np.ndarray, "n legs 3"]:
         """Return the inverse kinematics of all feet, each leg with the solution that it starts with."""
         g = self.robot.geometry
         points = points_in_body(self.body_at(fractions), self.feet_at(fractions))
         x, y, z = to_leg_frame(g, points[..., 0], points[..., 1], points[..., 2])
         min_bend = _MIN_BEND**2 * g.femur * g.tibia
-        solved = np.full(points.shape, np.nan)
-        for knee, facing in set(map(tuple, self._branches[self.cartesian].tolist())):
+        solved, branch = np.full(points.shape, np.nan), branches(self.robot, self.angles)
+        for behind, up in set(map(tuple, branch[self.cartesian].tolist())):
             with np.errstate(invalid="ignore"):
-                found = solve_triangle(np, g, x, y, z, knee=knee, facing=facing)
+                found = solve_triangle(np, g, x, y, z, knee=-1 if up else 1, facing=-1 if behind else 1)
             bent = (found.far >= min_bend) & (found.near >= min_bend) & (found.beside >= 0)
-            ok = bent & (self._branches == (knee, facing)).all(axis=-1)
+            ok = bent & (branch == (behind, up)).all(axis=-1)
             solved = np.where(ok[..., None], np.stack(found[:3], axis=-1), solved)
         # The equivalent angle nearest to the start.
         return np.asarray(solved - _FULL_TURN * np.round((solved - self.angles) / _FULL_TURN))
