@@ -1,7 +1,6 @@
 """Standing up, sitting down and folding from any joint angles: properties of the planned motion at all times."""
 
 import re
-from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -11,7 +10,7 @@ from hypothesis import strategies as st
 
 from gait_robots import PRESETS, preset
 from tarsus.control.startup.builder import BodyTarget
-from tarsus.control.startup.initial_state import initial_state, over_feet
+from tarsus.control.startup.initial_state import measured_state, over_feet, resting_state
 from tarsus.control.startup.planner import fold, sit_down, stand_up
 from tarsus.control.startup.raise_body import raise_body
 from tarsus.errors import InputError, TarsusError, UnreachableError
@@ -26,7 +25,6 @@ from tarsus.kinematics.rest import resting_pose
 from tarsus.kinematics.stability import stability_margin
 from tarsus.kinematics.stance import default_body_height, default_stance, default_swing_height
 from tarsus.kinematics.underside import belly_depth, underside_points
-from tarsus.robot.joint_limits import joint_limits
 from tarsus.robot.robot import stack_robots
 
 _DT = 0.004
@@ -355,7 +353,7 @@ def test_a_height_out_of_all_reach_is_reported():
 
 def test_the_error_says_if_no_lower_height_works():
     robot = preset("strider")
-    builder = replace(initial_state(robot, folded_pose(robot), joint_limits(robot)), swing_height=10.0)
+    builder = resting_state(measured_state(robot, folded_pose(robot), swing_height=10.0))
     feet = default_stance(robot, 0.11) * [2, 2, 1]
     with pytest.raises(UnreachableError, match=r"raising the body to 110.0 mm: .*; no lower body height works either"):
         raise_body(builder, feet, stance_angles(robot))
@@ -363,7 +361,7 @@ def test_the_error_says_if_no_lower_height_works():
 
 def test_with_three_feet_on_the_ground_none_is_lifted():
     robot = preset("strider")
-    builder = initial_state(robot, stance_angles(robot), joint_limits(robot))
+    builder = resting_state(measured_state(robot, stance_angles(robot)))
     for leg in (0, 2, 4):
         builder = builder.unload(leg)
     feet = default_stance(robot, builder.height, swing_height=0.03)
@@ -375,14 +373,14 @@ def test_with_three_feet_on_the_ground_none_is_lifted():
 def test_a_final_stance_with_other_angles_is_rejected():
     robot = preset("strider")
     stance = stance_angles(robot)
-    builder = initial_state(robot, stance, joint_limits(robot))
+    builder = resting_state(measured_state(robot, stance))
     with pytest.raises(UnreachableError, match=r"final joint angles differ from those of the stance by 0\.[0-9]+ deg"):
         raise_body(builder, default_stance(robot, swing_height=0.03), stance - 1e-5)
 
 
 def test_an_unloaded_foot_is_not_dragged():
     robot = preset("strider")
-    builder = initial_state(robot, stance_angles(robot), joint_limits(robot)).unload(0)
+    builder = resting_state(measured_state(robot, stance_angles(robot))).unload(0)
     aside, up = (
         BodyTarget(
             Pose(builder.body.rotation, builder.body.position + np.array([0.02, 0.0, height])), np.zeros(3), belly=False
@@ -413,10 +411,10 @@ def test_only_a_lying_robot_folds():
         ),
         ({"margin": -1.0}, "margin is -1"),
         ({"swing_height": np.inf}, "swing_height is inf"),
-        ({"angles": np.zeros((2, 6, 3))}, "a single robot in a single pose"),
+        ({"angles": np.zeros((2, 6, 3))}, r"a single robot in a single pose, not for a batch \(2,\)"),
         ({"angles": np.zeros((5, 3))}, "angles has shape"),
         ({"angles": np.full((6, 3), np.nan)}, "angles"),
-        ({"robot": stack_robots([preset("strider"), preset("strider")])}, r"not a batch \(2,\) of designs"),
+        ({"robot": stack_robots([preset("strider"), preset("strider")])}, r"not for a batch \(2,\)"),
     ],
 )
 def test_invalid_input_is_rejected(changes, message):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -11,22 +12,23 @@ from tarsus.arrays import Array, read_only
 from tarsus.control.startup.builder import GROUND_TOLERANCE, SequenceBuilder, body_contacts
 from tarsus.errors import InputError, TarsusError
 from tarsus.gait.foot_plane import FootPlane, fitted_plane
+from tarsus.gait.walk_setup import require_number
 from tarsus.kinematics.leg import checked_angles, forward_kinematics
 from tarsus.kinematics.pose import Pose
 from tarsus.kinematics.rest import resting_pose
 from tarsus.kinematics.rotation import levelling_rotation
+from tarsus.kinematics.stance import default_swing_height
 from tarsus.kinematics.underside import belly_depth
-from tarsus.robot.joint_limits import JointLimits
-from tarsus.robot.robot import Robot
+from tarsus.robot.joint_limits import joint_limits
+from tarsus.robot.robot import Robot, require_robot
 
 if TYPE_CHECKING:
     from jaxtyping import Bool, Float
 
-__all__ = ["SERVO_SPEED_SHARE", "initial_state", "lying_state", "over_feet", "uneven_state"]
+__all__ = ["lying_state", "measured_state", "over_feet", "resting_state", "uneven_state"]
 
-SERVO_SPEED_SHARE = 0.5
-"""Default joint speed of motion sequences, as a share of the servo's no-load speed."""
-
+# Default joint speed of motion sequences, as a share of the servo's no-load speed.
+_SERVO_SPEED_SHARE = 0.5
 # With a greater tilt, the robot has fallen over.
 _MAX_TILT = math.radians(60)
 # Tilt below which the body counts as level [rad].
@@ -54,8 +56,16 @@ def over_feet(robot: Robot) -> Robot:
     return robot.replace(body_size=np.array([length, width, max(height - 2 * radius, _THINNEST)]))
 
 
-def initial_state(robot: Robot, angles: Float[Array, "legs 3"], joint_limits: JointLimits) -> SequenceBuilder:
-    """Return a builder with the robot at rest in its measured joint angles.
+def measured_state(
+    robot: Robot,
+    angles: Float[Array, "legs 3"],
+    joint_speed: Float[Array, "..."] | None = None,
+    joint_acceleration: Float[Array, "..."] | None = None,
+    *,
+    swing_height: float | None = None,
+    margin: float = 0.0,
+) -> SequenceBuilder:
+    """Return a builder with a robot of which only the joint angles are known yet, as seen from the plane of its feet.
 
     Parameters
     ----------
@@ -63,18 +73,48 @@ def initial_state(robot: Robot, angles: Float[Array, "legs 3"], joint_limits: Jo
         A single robot.
     angles : array, shape (legs, 3)
         Measured joint angles, possibly slightly beyond their limits [rad].
-    joint_limits : JointLimits
-        Joint speeds and accelerations of the plan.
+    joint_speed, joint_acceleration : float or array, shape (3,) or (legs, 3), optional
+        Greatest joint speed [rad/s] and acceleration [rad/s^2] of the plan; by default half the servo's no-load speed,
+        reached within 0.05 s.
+    swing_height, margin : float, float
+        Of the builder [m]; the robot's own swing height where left out.
 
     Raises
     ------
     InputError
-        If the angles have the wrong shape or are not finite.
+        If the robot is a batch, the angles have the wrong shape, or a number is not finite or out of range.
+    """
+    require_robot(robot)
+    _, measured = checked_angles(robot, angles)
+    if batch := robot.batch_shape or measured.shape[:-2]:
+        raise InputError(f"motion sequences are planned for a single robot in a single pose, not for a batch {batch}")
+    swing_height = float(default_swing_height(robot)) if swing_height is None else swing_height
+    return SequenceBuilder(
+        robot=over_feet(robot),
+        joint_limits=joint_limits(robot, joint_speed, joint_acceleration, share=_SERVO_SPEED_SHARE),
+        angles=read_only(measured.copy()),
+        body=Pose(),
+        contacts=np.zeros(robot.legs, dtype=bool),
+        supports=np.zeros((0, 3)),
+        swing_height=require_number("swing_height", swing_height, zero=True),
+        margin=require_number("margin", margin, zero=True),
+    )
+
+
+def resting_state(state: SequenceBuilder) -> SequenceBuilder:
+    """Return a builder with the robot at rest in its measured joint angles.
+
+    Parameters
+    ----------
+    state : SequenceBuilder
+        As of `measured_state`.
+
+    Raises
+    ------
     TarsusError
         If the robot has fallen over.
     """
-    measured = _single_pose(robot, angles)
-    rest = resting_pose(robot, measured)
+    robot, rest = state.robot, resting_pose(state.robot, state.angles)
     tilt = math.acos(min(max(float(rest.body.rotation[2, 2]), -1.0), 1.0))
     if not rest.stable or tilt > _MAX_TILT:
         raise TarsusError(
@@ -83,87 +123,54 @@ def initial_state(robot: Robot, angles: Float[Array, "legs 3"], joint_limits: Jo
             "robot on its belly"
         )
     down = np.asarray(rest.leg_points_down)
-    points = rest.body @ forward_kinematics(robot, measured)
-    builder = SequenceBuilder(
-        robot=robot,
-        joint_limits=joint_limits,
-        angles=measured,
-        body=rest.body,
-        contacts=down[:, 3].copy(),
-        supports=np.concatenate([points[:, :3][down[:, :3]], body_contacts(robot, rest.body)]),
-        initial_margin=float(rest.margin),
-    )
-    lies = tilt < _LEVEL_TOLERANCE and abs(builder.height - belly_depth(robot)) < GROUND_TOLERANCE
-    return builder.lie_down() if lies else builder
+    points = rest.body @ forward_kinematics(robot, state.angles)
+    supports = np.concatenate([points[:, :3][down[:, :3]], body_contacts(robot, rest.body)])
+    contacts, margin = down[:, 3].copy(), float(rest.margin)
+    state = replace(state, body=rest.body, contacts=contacts, supports=supports, initial_margin=margin)
+    lies = tilt < _LEVEL_TOLERANCE and abs(state.height - belly_depth(robot)) < GROUND_TOLERANCE
+    return state.lie_down() if lies else state
 
 
-def uneven_state(
-    robot: Robot, angles: Float[Array, "legs 3"], joint_limits: JointLimits, loaded: Bool[np.ndarray, "legs"]
-) -> SequenceBuilder:
+def uneven_state(state: SequenceBuilder, loaded: Bool[np.ndarray, "legs"]) -> SequenceBuilder:
     """Return a builder with the robot standing on feet that are known to bear load, on ground of any height.
 
     The plane of these feet is level, and the lowest of all feet on the ground.
 
     Parameters
     ----------
-    robot : Robot
-        A single robot.
-    angles : array, shape (legs, 3)
-        Joint angles [rad].
-    joint_limits, loaded : JointLimits, array of bool, shape (legs,)
-        Joint speeds and accelerations of the plan; which feet bear load, at least three.
-
-    Raises
-    ------
-    InputError
-        If the angles have the wrong shape or are not finite.
+    state : SequenceBuilder
+        As of `measured_state`.
+    loaded : array of bool, shape (legs,)
+        Which feet bear load, at least three.
     """
-    measured = _single_pose(robot, angles)
-    feet = forward_kinematics(robot, measured)[:, 3]
+    feet = state.feet
     x, y, z = feet[loaded].T
     plane = fitted_plane((x + 1j * y).tolist(), z.tolist(), FootPlane(), 1.0)
     up = np.array([-plane.slope_x, -plane.slope_y, 1.0])
     rotation = levelling_rotation(up / np.linalg.norm(up))
-    body = Pose(rotation, np.array([0.0, 0.0, -float((feet @ rotation[2]).min())]))
-    return SequenceBuilder(
-        robot=robot, joint_limits=joint_limits, angles=measured, body=body, contacts=loaded, supports=np.zeros((0, 3))
+    return replace(
+        state, body=Pose(rotation, np.array([0.0, 0.0, -float((feet @ rotation[2]).min())])), contacts=loaded
     )
 
 
-def lying_state(
-    robot: Robot, angles: Float[Array, "legs 3"], joint_limits: JointLimits, *, purpose: str
-) -> SequenceBuilder:
+def lying_state(state: SequenceBuilder, *, purpose: str) -> SequenceBuilder:
     """Return a builder with the robot at rest, lying on its belly.
 
     Parameters
     ----------
-    robot : Robot
-        A single robot.
-    angles : array, shape (legs, 3)
-        Measured joint angles [rad].
-    joint_limits, purpose : JointLimits, str
-        Joint speeds and accelerations of the plan; what requires the robot to lie, for the error message.
+    state, purpose : SequenceBuilder, str
+        As of `measured_state`; what requires the robot to lie, for the error message.
 
     Raises
     ------
-    InputError
-        If the robot is a batch, or the angles have the wrong shape or are not finite.
     TarsusError
         If the robot does not lie on its belly.
     """
-    builder = initial_state(robot, angles, joint_limits)
-    if not builder.belly:
-        excess = (builder.height - belly_depth(robot)) * 1000
+    state = resting_state(state)
+    if not state.belly:
+        excess = (state.height - belly_depth(state.robot)) * 1000
         raise TarsusError(
-            f"{robot.name} {resting_pose(robot, builder.angles).describe()}; its body is {excess:.1f} mm higher than "
-            f"with its belly on the ground; {purpose} requires it to lie on its belly: use sit_down first"
+            f"{state.robot.name} {resting_pose(state.robot, state.angles).describe()}; its body is {excess:.1f} mm "
+            f"higher than with its belly on the ground; {purpose} requires it to lie on its belly: use sit_down first"
         )
-    return builder
-
-
-def _single_pose(robot: Robot, angles: Float[Array, "legs 3"]) -> Float[np.ndarray, "legs 3"]:
-    """Return the joint angles, refusing those of a batch."""
-    _, measured = checked_angles(robot, angles)
-    if robot.batch_shape or measured.ndim != 2:
-        raise InputError("motion sequences are planned for a single robot in a single pose, not for a batch")
-    return read_only(measured.copy())
+    return state

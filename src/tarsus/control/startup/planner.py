@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable
 from contextlib import suppress
-from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -12,24 +11,21 @@ import numpy as np
 from tarsus.arrays import Array
 from tarsus.control.sequence.sequence import MotionSequence
 from tarsus.control.startup.builder import BodyTarget, SequenceBuilder
-from tarsus.control.startup.initial_state import SERVO_SPEED_SHARE, initial_state, lying_state, over_feet, uneven_state
+from tarsus.control.startup.initial_state import lying_state, measured_state, resting_state, uneven_state
 from tarsus.control.startup.level_body import body_targets, level_body
 from tarsus.control.startup.raise_body import lower_body, raise_body
 from tarsus.errors import InputError, TarsusError, UnreachableError
-from tarsus.gait.walk_setup import require_number
 from tarsus.kinematics.folded_pose import folded_pose
 from tarsus.kinematics.inverse import inverse_kinematics
 from tarsus.kinematics.polygon import as_mask
 from tarsus.kinematics.stance import (
     default_body_height,
     default_stance,
-    default_swing_height,
     foothold_distances,
     footholds_straight_out,
 )
 from tarsus.kinematics.underside import belly_depth
-from tarsus.robot.joint_limits import joint_limits
-from tarsus.robot.robot import Robot, require_robot
+from tarsus.robot.robot import Robot
 
 if TYPE_CHECKING:
     from jaxtyping import Bool, Float
@@ -89,18 +85,16 @@ def stand_up(
     TarsusError
         If the robot has fallen over, or would fall over.
     """
-    swing_height, margin = _checked(robot, swing_height, margin)
+    state = measured_state(robot, angles, joint_speed, joint_acceleration, swing_height=swing_height, margin=margin)
     height = default_body_height(robot) if body_height is None else float(body_height)
-    lowest = belly_depth(over_feet(robot))
+    lowest = belly_depth(state.robot)
     if height < lowest:
         raise UnreachableError(
             f"body_height is {height * 1000:.1f} mm; it must be at least {lowest * 1000:.1f} mm, the height with the "
             "belly on the ground"
         )
-    folded = folded_pose(robot)
-    limits = joint_limits(robot, joint_speed, joint_acceleration, share=SERVO_SPEED_SHARE)
-    start = replace(initial_state(over_feet(robot), angles, limits), swing_height=swing_height, margin=margin)
-    feet = default_stance(robot, height, swing_height=swing_height)
+    folded, start = folded_pose(robot), resting_state(state)
+    feet = default_stance(robot, height, swing_height=state.swing_height)
     stance = inverse_kinematics(robot, feet).require().angles
 
     def plan(target: BodyTarget) -> SequenceBuilder:
@@ -154,20 +148,16 @@ def sit_down(
     TarsusError
         If the robot has fallen over, or would fall over.
     """
-    swing_height, margin = _checked(robot, swing_height, margin)
-    limits = joint_limits(robot, joint_speed, joint_acceleration, share=SERVO_SPEED_SHARE)
     if angles is None:
         angles = inverse_kinematics(robot, default_stance(robot, swing_height=swing_height)).require().angles
-    thin = over_feet(robot)
+    state = measured_state(robot, angles, joint_speed, joint_acceleration, swing_height=swing_height, margin=margin)
     bears = np.zeros(robot.legs, dtype=bool) if loaded is None else as_mask(np, loaded, name="loaded")
     if bears.shape != (robot.legs,):
         raise InputError(f"loaded has shape {bears.shape}; expected ({robot.legs},), one value for each leg")
     if bears.sum() >= _LEAST_FEET:
-        uneven = uneven_state(thin, angles, limits, bears)
         with suppress(TarsusError):
-            return _lying(robot, replace(uneven, swing_height=swing_height, margin=margin))
-    start = initial_state(thin, angles, limits)
-    return _lying(robot, replace(start, swing_height=swing_height, margin=margin))
+            return _lying(robot, uneven_state(state, bears))
+    return _lying(robot, resting_state(state))
 
 
 def fold(
@@ -198,19 +188,9 @@ def fold(
     TarsusError
         If the robot does not lie on its belly.
     """
-    require_robot(robot)
-    limits = joint_limits(robot, joint_speed, joint_acceleration, share=SERVO_SPEED_SHARE)
-    lying = lying_state(over_feet(robot), angles, limits, purpose="folding its legs")
+    state = measured_state(robot, angles, joint_speed, joint_acceleration)
+    lying = lying_state(state, purpose="folding its legs")
     return lying.move_legs("fold", folded_pose(robot), landed=False).sequence(robot)
-
-
-def _checked(robot: Robot, swing_height: float | None, margin: float) -> tuple[float, float]:
-    """Return the swing height and the stability margin, checked."""
-    require_robot(robot)
-    if robot.batch_shape:
-        raise InputError(f"a motion sequence is planned for a single robot, not a batch {robot.batch_shape} of designs")
-    swing_height = float(default_swing_height(robot)) if swing_height is None else swing_height
-    return require_number("swing_height", swing_height, zero=True), require_number("margin", margin, zero=True)
 
 
 def _first_feasible(

@@ -8,11 +8,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from tarsus.arrays import Array, read_only
-from tarsus.control.startup.initial_state import SERVO_SPEED_SHARE, lying_state, over_feet
+from tarsus.control.startup.initial_state import lying_state, measured_state
 from tarsus.kinematics.leg_path import LegFreeSpace
 from tarsus.representation import represented
-from tarsus.robot.joint_limits import joint_limits
-from tarsus.robot.robot import JOINTS, Robot, require_robot
+from tarsus.robot.robot import JOINTS, Robot
 
 if TYPE_CHECKING:
     from jaxtyping import Float
@@ -67,9 +66,8 @@ def power_off_order(robot: Robot, angles: Float[Array, "legs 3"]) -> PowerOffOrd
     TarsusError
         If the robot does not lie on its belly.
     """
-    require_robot(robot)
-    robot = over_feet(robot)
-    state = lying_state(robot, angles, joint_limits(robot, share=SERVO_SPEED_SHARE), purpose="switching its joints off")
+    state = lying_state(measured_state(robot, angles), purpose="switching its joints off")
+    robot = state.robot
     drop = np.zeros((robot.legs, 3))
     for leg in range(robot.legs):
         drop[leg, 1:] = _drops(robot, leg, LegFreeSpace.of(robot, leg, state.body), state.angles[leg])
