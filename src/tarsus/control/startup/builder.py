@@ -12,6 +12,7 @@ from tarsus.control.sequence.sequence import MotionSequence
 from tarsus.control.sequence.stage import Stage
 from tarsus.control.startup.checks import check_stage
 from tarsus.errors import UnreachableError
+from tarsus.kinematics.ground import ground_frame
 from tarsus.kinematics.leg import forward_kinematics
 from tarsus.kinematics.leg_path import LegFreeSpace, Path
 from tarsus.kinematics.pose import Pose
@@ -226,8 +227,7 @@ class SequenceBuilder:
             The robot that moves; the builder's differs from it in the thickness of its body.
         """
         stages = self.stages or (replace(self.hold("hold"), duration=0.0),)
-        rotation = Pose.from_rpy(0.0, 0.0, -float(self.body.rpy[2])).rotation
-        home = Pose(rotation, -rotation @ (self.body.position * [1.0, 1.0, 0.0]))
+        home = ground_frame(self.body).inverse()
         stages = tuple(replace(stage.transformed(home), robot=robot) for stage in stages)
         return MotionSequence(robot=robot, stages=stages, joint_limits=self.joint_limits)
 

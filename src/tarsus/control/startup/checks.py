@@ -135,10 +135,8 @@ def _check_lift_off(stage: Stage, feet: Float[np.ndarray, "n legs 3"]) -> None:
 def _check_margin(stage: Stage, margin: float) -> None:
     """Refuse a stage in which the centre of mass comes too near the edge of the support polygon."""
     supports = np.concatenate([stage.feet[stage.contacts], stage.supports])
-    fractions = GRID[::_MARGIN_INTERVAL]
-    com = stage.body_at(fractions) @ centre_of_mass(stage.robot, stage.table[::_MARGIN_INTERVAL])
-    points = np.broadcast_to(supports[:, :2], (fractions.size, *supports[:, :2].shape))
-    least = float(hull_margin(points, np.ones(points.shape[:2], dtype=bool), com[:, :2]).min())
+    com = stage.body_at(GRID[::_MARGIN_INTERVAL]) @ centre_of_mass(stage.robot, stage.table[::_MARGIN_INTERVAL])
+    least = float(hull_margin(supports[:, :2], np.ones(len(supports), dtype=bool), com[:, :2]).min())
     if least >= margin - _MARGIN_TOLERANCE:
         return
     if not len(supports):
