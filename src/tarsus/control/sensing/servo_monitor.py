@@ -100,8 +100,8 @@ class ServoMonitor:
         # It looks at once, and so in the ticks in which the body is looked at: the others are short.
         self._span = self._time = self._since = self._wait = 0.0
         self._evidence: Float[np.ndarray, "2 legs 3"] | None = None
-        # Legs that have been found, and those whose feet touched as joints were last looked at.
-        self._found, self._touched = set[int](), set[int]()
+        # Legs whose feet touched as joints were last looked at.
+        self._touched = set[int]()
         # Of femurs that were off when joints were last looked at: what has counted since the foot touched or the femur
         # was not held up, and its lowest angle since [rad].
         self._raised = dict[int, tuple[float, float]]()
@@ -139,11 +139,6 @@ class ServoMonitor:
         # A foot that presses on moving ground loses touch for a moment, in which its servo is stalled as before.
         touching = touched | self._touched
         raised, self._raised = self._raised, {}
-        for leg in self._found - self.failed.keys():
-            # It is to be used again: what has told against it does not count any more.
-            assert self._evidence is not None  # what it was found by
-            self._found.discard(leg)
-            self._evidence[:, leg] = 0.0
         stuck = self._stuck(measured, commanded, valid, dt)
         if self._evidence is not None:
             self._evidence *= 0.5 ** (dt / _MEMORY)
@@ -174,7 +169,8 @@ class ServoMonitor:
             self._evidence[1] += _ONCE * stuck
         for _, leg, joint in np.argwhere(self._evidence > _FAILED_AFTER).tolist():
             self.failed.setdefault(leg, joint)
-            self._found.add(leg)
+        # What tells against a leg that has failed does not count if it is to be used again.
+        self._evidence[:, list(self.failed)] = 0.0
 
     def _torque(self, valid: ValidReadings, leg: int, joint: int) -> float:
         """Return the measured torque of a joint over the stall torque of its servo; NaN where it is unknown."""
