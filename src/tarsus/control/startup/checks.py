@@ -76,14 +76,12 @@ def check_stage(stage: Stage, margin: float) -> None:
 
 def _check_reach(stage: Stage) -> None:
     """Refuse a stage in which a foot cannot follow its Cartesian path."""
-    failing = np.argwhere(np.isnan(stage.table).any(-1))
-    if not len(failing):
-        # At the ends of the range of angles, a leg can start with another solution than that of its branch.
-        jump = np.abs(stage.table[0] - stage.angles).max(-1)
-        failing = np.argwhere([jump > _BRANCH_TOLERANCE])
-    if not len(failing):
+    fails = np.isnan(stage.table).any(-1)
+    # At the ends of the range of angles, a leg can start with another solution than that of its branch.
+    fails[0] |= np.abs(stage.table[0] - stage.angles).max(-1) > _BRANCH_TOLERANCE
+    if not fails.any():
         return
-    index, leg = (int(i) for i in failing[0])
+    index, leg = (int(i) for i in np.argwhere(fails)[0])
     fraction = GRID[index : index + 1]
     body = stage.body_at(fraction)[0]
     feet = np.where(stage.cartesian[:, None], stage.feet_at(fraction)[0], stage.feet)

@@ -18,12 +18,7 @@ from tarsus.errors import InputError, TarsusError, UnreachableError
 from tarsus.kinematics.folded_pose import folded_pose
 from tarsus.kinematics.inverse import inverse_kinematics
 from tarsus.kinematics.polygon import as_mask
-from tarsus.kinematics.stance import (
-    default_body_height,
-    default_stance,
-    foothold_distances,
-    footholds_straight_out,
-)
+from tarsus.kinematics.stance import default_body_height, default_stance, foothold_distances, footholds_straight_out
 from tarsus.kinematics.underside import belly_depth
 from tarsus.robot.robot import Robot
 

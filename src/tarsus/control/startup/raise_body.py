@@ -140,28 +140,27 @@ def _change_footholds(builder: SequenceBuilder, angles: Float[np.ndarray, "legs 
     Feet in the air are placed first. Then the tripods are moved, every second leg of the ring, and single legs where a
     tripod cannot be lifted.
     """
-    remaining = np.abs(angles - builder.angles).max(-1) > _SAME
-    if (remaining & ~builder.contacts).any():
-        # These legs bear no load, so the support of the body does not change.
-        builder = _move(builder, remaining & ~builder.contacts, angles, margin=0.0)
-        remaining &= np.abs(angles - builder.angles).max(-1) > _SAME
-    while remaining.any():
-        builder, group = _move_first_group(builder, remaining, angles)
-        remaining = remaining & ~group
+    while (remaining := np.abs(angles - builder.angles).max(-1) > _SAME).any():
+        lifted = remaining & ~builder.contacts
+        if lifted.any():
+            # These legs bear no load, so the support of the body does not change.
+            builder = _move(builder, lifted, angles, margin=0.0)
+        else:
+            builder = _move_first_group(builder, remaining, angles)
     return builder
 
 
 def _move_first_group(
     builder: SequenceBuilder, remaining: Bool[np.ndarray, "legs"], angles: Float[np.ndarray, "legs 3"]
-) -> tuple[SequenceBuilder, Bool[np.ndarray, "legs"]]:
-    """Move the first group of legs that can be lifted, and return it too."""
+) -> SequenceBuilder:
+    """Move the first group of legs that can be lifted."""
     failure = TarsusError(
         f"only {int(builder.contacts.sum())} feet are on the ground; lifting one of them requires at least "
         f"{_MIN_STANCE_FEET + 1}"
     )
     for group in _groups(builder, remaining):
         try:
-            return _move(builder, group, angles, margin=builder.margin), group
+            return _move(builder, group, angles, margin=builder.margin)
         except TarsusError as error:
             failure = error
     raise failure
