@@ -105,8 +105,6 @@ def _listed(
 
 def _number(dt: Any) -> float:
     """Return a time step as a float, NaN if it is not a number."""
-    if type(dt) is float:
-        return dt
     try:
         return math.nan if isinstance(dt, str | bytes | bytearray) else float(dt)
     except Exception:
