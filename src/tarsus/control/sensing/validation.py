@@ -65,10 +65,12 @@ class ReadingsValidator:
             for channel in self._channels:
                 channel.reset()
             return ValidReadings(rejected=(problem,))
-        rejected: list[str] = []
-        values = _VALUES(readings)
-        if ages:
-            values = self._fresh(values, ages, most, rejected)
+        rejected, values = list[str](), list(_VALUES(readings))
+        for index, name in enumerate(CHANNELS if ages else ()):
+            if values[index] is not None and (stale := _stale(name, ages.get(name, 0.0), most)):
+                rejected.append(stale)
+                self._channels[index].reset()
+                values[index] = None
         found: list[Any] = [
             value if value is None else channel.read(value, rejected)
             for channel, value in zip(self._channels, values, strict=True)
@@ -86,18 +88,6 @@ class ReadingsValidator:
         tells = next((name for name in ("contacts", "forces") if name in given), "joint_angles")
         joint, ground, contact = (max(0.0, ages.get(name, 0.0)) for name in ("joint_angles", "ground", tells))
         return ValidReadings._make((*found, joint, of_joints, ground, contact, _NONE, tuple(rejected)))
-
-    def _fresh(
-        self, values: tuple[Any, ...], ages: dict[str, float], most: float, rejected: list[str]
-    ) -> tuple[Any, ...]:
-        """Return the readings, None for those that are too old."""
-        fresh = list(values)
-        for index, (name, value) in enumerate(zip(CHANNELS, values, strict=True)):
-            if value is not None and (stale := _stale(name, ages.get(name, 0.0), most)):
-                rejected.append(stale)
-                self._channels[index].reset()
-                fresh[index] = None
-        return tuple(fresh)
 
     def _young(self, ages: tuple[Vector, ...], most: float, rejected: list[str]) -> list[int]:
         """Return the legs of which no joint angle is too old."""
