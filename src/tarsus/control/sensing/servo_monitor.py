@@ -139,7 +139,7 @@ class ServoMonitor:
         # A foot that presses on moving ground loses touch for a moment, in which its servo is stalled as before.
         touching = touched | self._touched
         raised, self._raised = self._raised, {}
-        stuck = self._stuck(measured, commanded, valid, dt)
+        stuck = self._stuck(np.stack([measured, commanded]), valid, dt)
         if self._evidence is not None:
             self._evidence *= 0.5 ** (dt / _MEMORY)
         # No joint is further from all recent commands than from the last one.
@@ -178,23 +178,21 @@ class ServoMonitor:
         return abs(of_leg[joint]) / float(self._stall_torque[leg, joint]) if of_leg else math.nan
 
     def _stuck(
-        self,
-        measured: Float[np.ndarray, "legs 3"],
-        commanded: Float[np.ndarray, "legs 3"],
-        valid: ValidReadings,
-        dt: float,
+        self, angles: Float[np.ndarray, "2 legs 3"], valid: ValidReadings, dt: float
     ) -> Bool[np.ndarray, "legs 3"] | None:
-        """Return which joints have not moved with their commands, at the end of a time in which any is so."""
-        both = np.stack([measured, commanded])
-        low, high = self._ranges or (both, both)
-        self._ranges = low, high = np.minimum(low, both), np.maximum(high, both)
+        """Return which joints have not moved with their commands, at the end of a time in which any is so.
+
+        `angles` are those measured and those commanded [rad].
+        """
+        low, high = self._ranges or (angles, angles)
+        self._ranges = low, high = np.minimum(low, angles), np.maximum(high, angles)
         self._time += dt
         if self._time < _WITHIN:
             return None
         moved, wanted = high - low
         with np.errstate(invalid="ignore"):
             stuck: np.ndarray = (wanted > _COMMANDED) & (moved < _SHARE * wanted)
-            pressed = np.flatnonzero((stuck & (measured > commanded))[:, _FEMUR]).tolist()
+            pressed = np.flatnonzero((stuck & (angles[0] > angles[1]))[:, _FEMUR]).tolist()
         # The ground may stall a femur that presses its foot down: what it does once that has lifted tells.
         if any(leg in self._touched and self._torque(valid, leg, _FEMUR) > _IDLE for leg in pressed):
             return None
