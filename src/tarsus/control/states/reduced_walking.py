@@ -14,7 +14,6 @@ from tarsus.control.command import Command
 from tarsus.control.control_output import Snapshot
 from tarsus.control.limitation import Limitation, LimitationKind
 from tarsus.control.readings import CHANNELS, SensorReadings, Vector
-from tarsus.control.robot_state import RobotState
 from tarsus.control.sensing.plain_values import as_items, as_vector
 from tarsus.control.sensing.servo_monitor import ServoMonitor
 from tarsus.control.states.activity import Braking, Walking
@@ -143,7 +142,6 @@ class ReducedWalking(Walking):
             angles=read_only(angles),
             feet=None,
             contacts=contacts,
-            state=now.state if share >= 1 else RobotState.WALKING,
             limitations=(*self._limitations, *now.limitations),
             # The feet slide to their new stance.
             felt=now.felt or share < 1,
