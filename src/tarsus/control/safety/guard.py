@@ -219,18 +219,13 @@ class Guard:
         """Return whether the joints may move towards a valid command."""
         if self._reset_requested:
             return True
-        distance, joint = self._joints.distance(command)
         recovering = self.state is GuardState.RECOVERING
         # Hysteresis: twice the distance while recovering.
-        bound = (2 if recovering else 1) * self.bounds.recovery_distance
-        if distance > bound:
-            violations.append(
-                Intervention(InterventionKind.COMMAND_DISTANCE, *self._joints.names[joint], distance, bound)
-            )
-            if recovering:
-                self._hold()
-            return False
-        return recovering or self._recover == "near"
+        far = self._joints.distance_violations(command, (2 if recovering else 1) * self.bounds.recovery_distance)
+        violations += far
+        if far and recovering:
+            self._hold()
+        return not far and (recovering or self._recover == "near")
 
     def _recover_to(self, command: list[float], step: float) -> None:
         self.state, self._sit_down = GuardState.RECOVERING, None

@@ -142,17 +142,17 @@ class JointMonitor:
         """
         self._send_velocities([0.0] * len(self.speeds), step)
 
-    def distance(self, angles: list[float]) -> tuple[float, int]:
-        """Return the greatest distance of a joint from `angles` [rad], and the index of the joint.
+    def distance_violations(self, angles: list[float], bound: float) -> list[Intervention]:
+        """Return the joints that are farther from `angles` than a bound.
 
         Parameters
         ----------
-        angles : list of float
-            Joint angles in one flat list [rad].
+        angles, bound : list of float, float
+            Joint angles in one flat list [rad]; greatest distance [rad].
         """
         distances = [abs(angle - last) for angle, last in zip(angles, self.angles, strict=True)]
-        greatest = max(distances)
-        return greatest, distances.index(greatest)
+        kind, far = InterventionKind.COMMAND_DISTANCE, zip(self.names, distances, strict=True)
+        return [Intervention(kind, *name, distance, bound) for name, distance in far if distance > bound]
 
     def recover(self, last_command: list[float], command: list[float], step: float) -> bool:
         """Move the joints towards the command; return whether they match its angles and velocities.
