@@ -49,7 +49,7 @@ class FootLoads:
 
     def __init__(self, robot: Robot, admittance: Admittance | None) -> None:
         self._weight = known_weight(robot)
-        self._torques = FootForceEstimator(robot) if robot.has_masses else None
+        self._torques = FootForceEstimator(robot)
         self._joints = JointContacts(robot) if robot.has_masses and all(map(all, robot.servos)) else None
         self.estimated, self._untold = False, math.inf
         # What load cells measure without a load [N].
@@ -105,7 +105,7 @@ class FootLoads:
         if self._filter is None:
             return None
         forces: Sequence[Vector | None] | None = valid.forces
-        if forces is None and valid.torques is not None and self._torques is not None:
+        if forces is None and valid.torques is not None:
             forces = self._torques.forces(commanded, valid.torques)
         if forces is None or not self._weight:
             return self._filter.step((None,) * len(state.foot), dt)
