@@ -132,7 +132,10 @@ class MotionSequence:
             If the rate is not finite or not greater than 0, or `standing` is set and the body is never off the ground.
         """
         rate = require_number("rate", rate, zero=False)
-        first, last = self._standing_interval() if standing else (0.0, self.duration)
+        stages = [index for index, stage in enumerate(self.stages) if not (standing and stage.belly)]
+        if not stages:
+            raise InputError("the body lies on the ground in every stage; a motion with standing=True would be empty")
+        first, last = self.starts[stages[0]], self.starts[stages[-1] + 1]
         time = np.arange(max(math.ceil((last - first) * rate - 1e-9), 1) + 1) / rate
         samples = [self.at(min(first + t, last)) for t in time.tolist()]
         angles = np.array([sample.angles for sample in samples])
@@ -153,10 +156,3 @@ class MotionSequence:
             swing_height=max(stage.swing_height for stage in self.stages),
             foot_distance=0.0,
         )
-
-    def _standing_interval(self) -> tuple[float, float]:
-        """Return the start of the first and the end of the last stage in which the body is off the ground."""
-        standing = [i for i, stage in enumerate(self.stages) if not stage.belly]
-        if not standing:
-            raise InputError("the body lies on the ground in every stage; a motion with standing=True would be empty")
-        return self.starts[standing[0]], self.starts[standing[-1] + 1]
