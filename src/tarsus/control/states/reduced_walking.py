@@ -111,12 +111,10 @@ class ReducedWalking(Walking):
         velocities = {legs[leg]: each for leg, each in (command.foot_velocities or {}).items() if leg in legs} or None
         command = dataclasses.replace(command, gait=None, foot_targets=targets, foot_velocities=velocities)
         super().step(command, dt, None if readings is None else self._of_legs(readings))
-        angles, torques, contacts = self.measured.joint_angles, self.measured.torques, self.measured.contacts
-        if angles is not None:
-            angles = _turned(angles, self._zero[:, 0])
-        self.measured = self.measured._replace(
-            joint_angles=self._of_all(angles), torques=self._of_all(torques), contacts=self._of_all(contacts)
-        )
+        valid = self.measured
+        angles = valid.joint_angles and _turned(valid.joint_angles, self._zero[:, 0])
+        torques, contacts = self._of_all(valid.torques), self._of_all(valid.contacts)
+        self.measured = valid._replace(joint_angles=self._of_all(angles), torques=torques, contacts=contacts)
 
     @property
     def gait(self) -> Gait:
