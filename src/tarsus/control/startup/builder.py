@@ -110,10 +110,10 @@ class SequenceBuilder:
         """Body height [m]."""
         return float(self.body.position[2])
 
-    def hold(self, name: str) -> Stage:
-        """Return a stage of this name, of one second, in which nothing moves."""
+    def stage(self, name: str, **changes: Any) -> Stage:
+        """Return a stage of this name, of one second, in which nothing moves but for changes; it is not checked."""
         feet = self.feet
-        return Stage(
+        still = Stage(
             name=name,
             robot=self.robot,
             duration=1.0,
@@ -131,6 +131,7 @@ class SequenceBuilder:
             supports=self.supports,
             belly=self.belly,
         )
+        return replace(still, **changes)
 
     def move_legs(self, name: str, angles: Float[np.ndarray, "legs 3"], *, landed: bool, margin: float = 0.0) -> Self:
         """Move legs through the air to joint angles, with the body stationary and no point below the ground.
@@ -226,14 +227,14 @@ class SequenceBuilder:
         robot : Robot
             The robot that moves; the builder's differs from it in the thickness of its body.
         """
-        stages = self.stages or (replace(self.hold("hold"), duration=0.0),)
+        stages = self.stages or (self.stage("hold", duration=0.0),)
         home = ground_frame(self.body).inverse()
         stages = tuple(replace(stage.transformed(home), robot=robot) for stage in stages)
         return MotionSequence(robot=robot, stages=stages, joint_limits=self.joint_limits)
 
     def _add(self, name: str, *, margin: float = 0.0, **changes: Any) -> Self:
-        """Add a stage of the shortest duration that differs from `hold` by `changes`; omit it if no joint moves."""
-        stage = replace(self.hold(name), **changes)
+        """Add a stage with changes, checked and of the shortest duration; omit it if no joint moves."""
+        stage = self.stage(name, **changes)
         check_stage(stage, margin)
         after = replace(self, contacts=stage.contacts_end, body=stage.end)
         if np.abs(stage.table - self.angles).max() <= _MIN_MOTION:

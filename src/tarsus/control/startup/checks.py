@@ -14,7 +14,7 @@ from tarsus.kinematics.leg_path import lifts_off
 from tarsus.kinematics.mass import centre_of_mass
 from tarsus.kinematics.polygon import hull_margin
 from tarsus.kinematics.underside import underside_points
-from tarsus.robot.robot import JOINTS, Robot
+from tarsus.robot.robot import JOINTS
 
 if TYPE_CHECKING:
     from jaxtyping import Float
@@ -31,23 +31,21 @@ _BRANCH_TOLERANCE = 1e-6
 _MARGIN_INTERVAL = 4
 
 
-def limit_excess(robot: Robot, angles: Float[np.ndarray, "*#batch legs 3"]) -> Float[np.ndarray, "*batch legs 3"]:
-    """Return how far joint angles are beyond their limits.
+def limit_excess(stage: Stage) -> Float[np.ndarray, "257 legs 3"]:
+    """Return how far the joint angles of `Stage.table` are beyond their limits [rad].
 
     Parameters
     ----------
-    robot : Robot
-        A single robot.
-    angles : array, shape (..., legs, 3)
-        Joint angles [rad].
+    stage : Stage
+        The stage.
 
     Returns
     -------
-    array, shape (..., legs, 3)
-        Excess, 0 within the limits [rad].
+    array, shape (257, legs, 3)
+        Excess, 0 within the limits, NaN where a foot is out of reach [rad].
     """
-    low, high = robot.limits[..., 0], robot.limits[..., 1]
-    return np.asarray(np.maximum(np.maximum(low - angles, angles - high), 0.0))
+    low, high = np.moveaxis(stage.robot.limits, -1, 0)
+    return np.asarray(np.maximum(np.maximum(low - stage.table, stage.table - high), 0.0))
 
 
 def check_stage(stage: Stage, margin: float) -> None:
@@ -93,7 +91,7 @@ def _check_reach(stage: Stage) -> None:
 
 def _check_limits(stage: Stage) -> None:
     """Refuse a stage in which a joint leaves its limits, or moves further beyond a limit."""
-    excess = limit_excess(stage.robot, stage.table)
+    excess = limit_excess(stage)
     increases = np.diff(excess, axis=0) > _ANGLE_TOLERANCE
     if not increases.any():
         return

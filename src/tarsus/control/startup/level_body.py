@@ -8,12 +8,10 @@ that they support the body too.
 from __future__ import annotations
 
 from contextlib import suppress
-from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from tarsus.control.sequence.stage import GRID, Stage
 from tarsus.control.startup.builder import GROUND_TOLERANCE, BodyTarget, SequenceBuilder
 from tarsus.control.startup.checks import limit_excess
 from tarsus.errors import TarsusError
@@ -92,14 +90,12 @@ def level_body(builder: SequenceBuilder, target: BodyTarget, stance: Float[np.nd
     if builder.belly:
         return builder
     on_knee = builder.points[:, 2, 2] < GROUND_TOLERANCE
-    follows = builder.contacts & ~on_knee & _can_follow(builder, target)
-    blocking = (builder.contacts | on_knee) & ~follows
-    free = ~builder.contacts & ~on_knee
+    follows = _can_follow(builder, target)
+    blocking, free = on_knee | (builder.contacts & ~follows), ~(builder.contacts | on_knee)
     near_ground = np.zeros_like(free)
     if target.belly and not blocking.any():
-        near_ground = free & _can_follow(builder, target) & (builder.feet[:, 2] < _NEAR_GROUND)
-        free = free & ~near_ground
-        folded = np.where(free[:, None], folded_pose(builder.robot), builder.angles)
+        near_ground = free & follows & (builder.feet[:, 2] < _NEAR_GROUND)
+        folded = np.where((free & ~near_ground)[:, None], folded_pose(builder.robot), builder.angles)
         builder = builder.move_legs("retract free legs", folded, landed=False)
     else:
         builder = _place_feet(builder, target, stance, free=free, blocking=blocking)
@@ -110,14 +106,9 @@ def level_body(builder: SequenceBuilder, target: BodyTarget, stance: Float[np.nd
 
 def _can_follow(builder: SequenceBuilder, target: BodyTarget) -> Bool[np.ndarray, "legs"]:
     """Return the legs that can keep their feet in place while the body moves to the target."""
-    angles = _stage_to(builder, target, np.ones(builder.robot.legs, dtype=bool)).angles_at(GRID)
-    excess_grows = np.diff(limit_excess(builder.robot, np.nan_to_num(angles)), axis=0) > _ANGLE_TOLERANCE
-    return np.array(~(np.isnan(angles).any((0, 2)) | excess_grows.any((0, 2))))
-
-
-def _stage_to(builder: SequenceBuilder, target: BodyTarget, cartesian: Bool[np.ndarray, "legs"]) -> Stage:
-    """Return a stage to a pose of the body, unchecked; the feet of some legs stay, the other legs keep their angles."""
-    return replace(builder.hold(""), end=target.body, pivot=target.pivot, cartesian=cartesian)
+    stage = builder.stage("", end=target.body, pivot=target.pivot, cartesian=np.ones_like(builder.contacts))
+    excess_grows = np.diff(limit_excess(stage), axis=0) > _ANGLE_TOLERANCE
+    return np.array(~(np.isnan(stage.table).any((0, 2)) | excess_grows.any((0, 2))))
 
 
 def _place_feet(
@@ -182,7 +173,7 @@ def _footholds(
     height = target.body.position[2]
     candidates = np.stack([x, y, np.full_like(x, -height)], axis=-1).reshape(-1, robot.legs, 3)
     candidates = np.concatenate([(stance * [1, 1, 0] - [0, 0, height])[None], candidates])
-    path = _stage_to(builder, target, np.zeros(robot.legs, dtype=bool)).body_at(np.linspace(0, 1, _POSES))
+    path = builder.stage("", end=target.body, pivot=target.pivot).body_at(np.linspace(0, 1, _POSES))
     feet = np.broadcast_to((target.body @ candidates)[:, None], (len(candidates), _POSES, robot.legs, 3))
     solution = inverse_kinematics(robot, feet, path)
     reachable = (np.asarray(solution.reach) == 0).all(1)
