@@ -130,7 +130,10 @@ class Guard:
 
     def summary(self) -> str:
         """Return the counts and the worst intervention of each kind as text, in mm and degrees."""
-        return self._log.summary(self.time, self.state)
+        total = sum(self.counts.values())
+        lines = [f"{total} intervention{'s' * (total != 1)} in {self.time:.2f} s, state: {self.state}"]
+        lines += [f"  {number} x {self._log.worst[kind].text()}" for kind, number in self.counts.items()]
+        return "\n".join(lines)
 
     def reset(self) -> None:
         """Let the guard recover to the next command that violates no bound, however far away it is.
@@ -176,7 +179,9 @@ class Guard:
             self._last_command = command
         elif self.state is not GuardState.HOLDING:
             self._hold()
-        return self._output(violations)
+        interventions = self._log.record(violations, self.time)
+        sent = read_only(np.array(self._joints.angles).reshape(self._robot.legs, 3))
+        return GuardOutput(sent, self.state is GuardState.PASSING, self.state, self.time, interventions)
 
     def _feet_violations(self, command: list[float], contacts: Any, body: Pose | None) -> list[Intervention]:
         """Return the violations of contacts and body pose if these are invalid, else those of the feet."""
@@ -249,8 +254,3 @@ class Guard:
         if self._policy == "sit" and not self._seated and self._time_at_rest > self.bounds.sit_delay:
             self.state = GuardState.SITTING
             self._sit_down = SitDown(self._robot, self.bounds, self._joints, stance=self._feet.stance, up=self._feet.up)
-
-    def _output(self, violations: list[Intervention]) -> GuardOutput:
-        interventions = self._log.record(violations, self.time)
-        angles = read_only(np.array(self._joints.angles).reshape(self._robot.legs, 3))
-        return GuardOutput(angles, self.state is GuardState.PASSING, self.state, self.time, interventions)

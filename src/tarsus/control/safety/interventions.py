@@ -142,8 +142,8 @@ class InterventionLog:
     ----------
     latest : deque of Intervention
         The latest interventions at the tick they began, oldest first.
-    counts : mapping of InterventionKind to int
-        How many interventions of each kind began.
+    counts, worst : mapping of InterventionKind to (int, Intervention)
+        How many interventions of each kind began; the worst of each.
 
     Parameters
     ----------
@@ -154,7 +154,7 @@ class InterventionLog:
     def __init__(self, size: int) -> None:
         self._active: Set[InterventionKind] = set()
         self._counts: dict[InterventionKind, int] = {}
-        self._worst: dict[InterventionKind, Intervention] = {}
+        self.worst: dict[InterventionKind, Intervention] = {}
         self.latest: deque[Intervention] = deque(maxlen=size)
         self.counts: Mapping[InterventionKind, int] = MappingProxyType(self._counts)
 
@@ -176,19 +176,6 @@ class InterventionLog:
             if kind not in self._active:
                 self._counts[kind] = self._counts.get(kind, 0) + 1
                 self.latest.append(found)
-            self._worst[kind] = max(self._worst.get(kind, found), found, key=attrgetter("excess"))
+            self.worst[kind] = max(self.worst.get(kind, found), found, key=attrgetter("excess"))
         self._active = worst.keys()
         return tuple(worst.values())
-
-    def summary(self, time: float, state: GuardState) -> str:
-        """Return the counts and the worst intervention of each kind as text.
-
-        Parameters
-        ----------
-        time, state : float, GuardState
-            Time of the guard [s]; state of the guard.
-        """
-        total = sum(self._counts.values())
-        lines = [f"{total} intervention{'s' * (total != 1)} in {time:.2f} s, state: {state}"]
-        lines += [f"  {number} x {self._worst[kind].text()}" for kind, number in self._counts.items()]
-        return "\n".join(lines)
