@@ -29,14 +29,15 @@ def read_angles(angles: Any, names: list[tuple[str, str]], violations: list[Inte
     names, violations : list of (str, str), list of Intervention
         Names of leg and joint, for all joints; takes the violation.
     """
-    values = _listed(angles, "fiu", (len(names) // 3, 3), InterventionKind.SHAPE, violations)
-    if values is None:
+    listed = _listed(angles, "fiu", (len(names) // 3, 3), InterventionKind.SHAPE, violations)
+    if listed is None:
         return None
+    values = [float(value) for value in listed]
     for name, value in zip(names, values, strict=True):
         if not math.isfinite(value):
             violations.append(Intervention(InterventionKind.NOT_FINITE, *name, value, math.nan))
             return None
-    return [float(value) for value in values]
+    return values
 
 
 def read_contacts(contacts: Any, legs: int, violations: list[Intervention]) -> list[bool] | None:
@@ -80,12 +81,14 @@ def read_time_step(dt: Any, bounds: GuardBounds, violations: list[Intervention])
     bounds, violations : GuardBounds, list of Intervention
         Bounds of the time step; takes the violation.
     """
-    dt = _number(dt)
-    if bounds.max_time_step < dt <= _LONGEST_GAP:
-        violations.append(Intervention(InterventionKind.TIME_GAP, "", "", dt, bounds.max_time_step))
-    elif not bounds.min_time_step <= dt <= bounds.max_time_step:
-        violations.append(Intervention(InterventionKind.TIME_STEP, "", "", dt, bounds.min_time_step))
-    return dt if 0 < dt <= _LONGEST_GAP else 0.0
+    step = math.nan
+    with suppress(Exception):
+        step = math.nan if isinstance(dt, str | bytes | bytearray) else float(dt)
+    if bounds.max_time_step < step <= _LONGEST_GAP:
+        violations.append(Intervention(InterventionKind.TIME_GAP, "", "", step, bounds.max_time_step))
+    elif not bounds.min_time_step <= step <= bounds.max_time_step:
+        violations.append(Intervention(InterventionKind.TIME_STEP, "", "", step, bounds.min_time_step))
+    return step if 0 < step <= _LONGEST_GAP else 0.0
 
 
 def _listed(
@@ -101,11 +104,3 @@ def _listed(
             return array.ravel().tolist()
     violations.append(Intervention(wrong, "", "", size, float(math.prod(shape))))
     return None
-
-
-def _number(dt: Any) -> float:
-    """Return a time step as a float, NaN if it is not a number."""
-    try:
-        return math.nan if isinstance(dt, str | bytes | bytearray) else float(dt)
-    except Exception:
-        return math.nan
