@@ -104,12 +104,10 @@ class ContinuedReadings:
     def _predicted(self, valid: ValidReadings, dt: float, lag: float) -> ValidReadings:
         """Return the readings with the joint angles of now."""
         ages: float | Float[np.ndarray, "legs 3"] = np.array(valid.joint_ages) if valid.joint_ages else valid.joint_age
-        # Legs that have been given the last ones, or have none.
-        old = [leg for name, leg in self._missing if name == "joint_angles"]
-        if valid.rejected:
-            old += [leg for leg, angles in enumerate(valid.joint_angles or ()) if angles is None]
+        shape = len(self._commands[-1][1]), 3
+        given = self.valid.joint_angles or (None,) * shape[0]
+        old = [leg for leg, angles in enumerate(given) if angles is None]
         if old:
-            shape = np.shape(self._commands[-1][1])
             before, ages = np.broadcast_to(self._ages, shape), np.broadcast_to(ages, shape).copy()
             ages[old] = before[old] + dt
         self._ages = ages
@@ -117,7 +115,7 @@ class ContinuedReadings:
         self._usual = usual = min(youngest, self._usual + _SLOWER * dt)
         if ages is youngest and ages <= usual + _SAME * dt:
             return valid
-        held = np.broadcast_to(ages, np.shape(self._commands[-1][1])) - usual
+        held = np.broadcast_to(ages, shape) - usual
         moved, predicted = self._moved(held, lag), np.flatnonzero(held[:, 0] > _SAME * dt)
         legs = zip(valid.joint_angles or (), moved.tolist(), strict=True)
         angles = tuple(leg and (leg[0] + by[0], leg[1] + by[1], leg[2] + by[2]) for leg, by in legs)
