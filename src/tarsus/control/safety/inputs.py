@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from contextlib import suppress
 from typing import Any
 
 import numpy as np
@@ -32,8 +31,9 @@ def read_angles(angles: Any, names: list[tuple[str, str]], violations: list[Inte
     listed = _listed(angles, "fiu", (len(names) // 3, 3), InterventionKind.SHAPE, violations)
     if listed is None:
         return None
-    values = [float(value) for value in listed]
-    for name, value in zip(names, values, strict=True):
+    values = list(map(float, listed))
+    # Only the sum of values that are not finite, or of very great ones, is not finite.
+    for name, value in () if math.isfinite(sum(values)) else zip(names, values, strict=True):
         if not math.isfinite(value):
             violations.append(Intervention(InterventionKind.NOT_FINITE, *name, value, math.nan))
             return None
@@ -81,9 +81,10 @@ def read_time_step(dt: Any, bounds: GuardBounds, violations: list[Intervention])
     bounds, violations : GuardBounds, list of Intervention
         Bounds of the time step; takes the violation.
     """
-    step = math.nan
-    with suppress(Exception):
+    try:
         step = math.nan if isinstance(dt, str | bytes | bytearray) else float(dt)
+    except Exception:
+        step = math.nan
     if bounds.max_time_step < step <= _LONGEST_GAP:
         violations.append(Intervention(InterventionKind.TIME_GAP, "", "", step, bounds.max_time_step))
     elif not bounds.min_time_step <= step <= bounds.max_time_step:
@@ -95,12 +96,13 @@ def _listed(
     given: Any, kinds: str, shape: tuple[int, ...], wrong: InterventionKind, violations: list[Intervention]
 ) -> list[Any] | None:
     """Return the numbers of an array of a shape and a kind of data type in one flat list."""
-    size = math.nan
     # The conversion of an arbitrary object can raise anything, and the guard must still return angles.
-    with suppress(Exception):
+    try:
         array = np.asarray(given)
-        size = float(array.size)
         if array.dtype.kind in kinds and array.shape == shape:
             return array.ravel().tolist()
+        size = float(array.size)
+    except Exception:
+        size = math.nan
     violations.append(Intervention(wrong, "", "", size, float(math.prod(shape))))
     return None
