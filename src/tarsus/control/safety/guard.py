@@ -247,9 +247,7 @@ class Guard:
             return
         if self._sit_down is not None:
             self.state, self._sit_down, self._seated = GuardState.HOLDING, None, not gap
-        self._joints.brake(step)
-        if gap:
-            self._joints.end_gap()
+        self._joints.brake(step, gap=gap)
         self._time_at_rest = self._time_at_rest + step if self._joints.at_rest and not gap else 0.0
         if self._policy == "sit" and not self._seated and self._time_at_rest > self.bounds.sit_delay:
             self.state = GuardState.SITTING

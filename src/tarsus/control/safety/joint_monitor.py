@@ -70,11 +70,6 @@ class JointMonitor:
         """
         self.angles, self.speeds, self._step = angles, [0.0] * len(angles), step
 
-    def end_gap(self) -> None:
-        """Discard the length of the last step if the joints are at rest: a long gap must not allow a sudden start."""
-        if self.at_rest:
-            self._step = 0.0
-
     def limit_violations(self, angles: list[float]) -> list[Intervention]:
         """Return the angles beyond a limit; clamp `angles` to the limits in place.
 
@@ -132,15 +127,17 @@ class JointMonitor:
         self.speeds = [(angle - last) / step for angle, last in zip(angles, self.angles, strict=True)]
         self.angles, self._step = angles, step
 
-    def brake(self, step: float) -> None:
+    def brake(self, step: float, *, gap: bool = False) -> None:
         """Move every joint on along its velocity while braking at its greatest acceleration.
 
         Parameters
         ----------
-        step : float
-            Time step [s].
+        step, gap : float, bool
+            Time step [s]; whether it is a gap, whose length must not allow joints at rest a sudden start.
         """
         self._send_velocities([0.0] * len(self.speeds), step)
+        if gap and self.at_rest:
+            self._step = 0.0
 
     def distance_violations(self, angles: list[float], bound: float) -> list[Intervention]:
         """Return the joints that are farther from `angles` than a bound.
