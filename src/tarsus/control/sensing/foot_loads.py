@@ -70,19 +70,16 @@ class FootLoads:
         state, dt : GaitState, float
             The gait state; time since the last tick [s].
         """
-        self.estimated, found = False, self._felt(valid)
+        self.estimated = False
+        found: Contacts = valid.contacts
+        if found is None and valid.forces is not None and self._weight:
+            least, cells = _CONTACT_SHARE * self._weight, zip(valid.forces, self._zeros, strict=True)
+            found = [None if force is None else force[2] - zero > least for force, zero in cells]
         self._untold = self._untold + dt if found is None else 0.0
         if self._untold > _UNTOLD and valid.joint_angles is not None and self._joints is not None:
             found = self._joints.contacts(valid, commanded, state, dt)
             self.estimated = found is not None
         return found
-
-    def _felt(self, valid: ValidReadings) -> Contacts:
-        """Return what switches tell, or else load cells."""
-        if valid.contacts is not None or valid.forces is None or not self._weight:
-            return valid.contacts
-        least, cells = _CONTACT_SHARE * self._weight, zip(valid.forces, self._zeros, strict=True)
-        return [None if force is None else force[2] - zero > least for force, zero in cells]
 
     def offsets(
         self, valid: ValidReadings, commanded: list[Vector], state: GaitState, dt: float, *, out: Sequence[int]
