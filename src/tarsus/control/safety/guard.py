@@ -243,9 +243,9 @@ class Guard:
 
     def _stay(self, step: float, *, gap: bool) -> None:
         """Brake and hold; with the policy "sit", sit down after a time at rest."""
-        if self._sit_down is not None and not gap and self._sit_down.step(step):
-            return
         if self._sit_down is not None:
+            if not gap and self._sit_down.step(step):
+                return
             self.state, self._sit_down, self._seated = GuardState.HOLDING, None, not gap
         self._joints.brake(step, gap=gap)
         self._time_at_rest = self._time_at_rest + step if self._joints.at_rest and not gap else 0.0

@@ -49,7 +49,6 @@ class SitDown:
         self, robot: Robot, bounds: GuardBounds, joints: JointMonitor, *, stance: list[bool] | None, up: Point
     ) -> None:
         self._robot, self._bounds, self._joints = robot, bounds, joints
-        self._max_speed = bounds.recovery_speed * bounds.speed
         self._up = np.array(up)
         # Points of the body in B that include its lowest point in any attitude.
         corners = robot.mount_position if robot.body_size is None else CORNERS * robot.body_size
@@ -104,7 +103,7 @@ class SitDown:
             change = np.linalg.solve(leg_jacobian(self._robot, current), offsets[..., None])[..., 0]
         except np.linalg.LinAlgError:
             return False
-        if not (np.abs(change) <= self._max_speed * dt).all():
+        if not (np.abs(change) <= self._bounds.recovery_speed * self._bounds.speed * dt).all():
             return False
         angles: list[float] = (current + change).ravel().tolist()
         if self._joints.limit_violations(angles) or self._joints.motion_violations(angles, dt):
