@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
 from contextlib import suppress
 from dataclasses import replace
 from typing import TYPE_CHECKING
@@ -153,25 +152,20 @@ def _change_footholds(builder: SequenceBuilder, angles: Float[np.ndarray, "legs 
 def _move_first_group(
     builder: SequenceBuilder, remaining: Bool[np.ndarray, "legs"], angles: Float[np.ndarray, "legs 3"]
 ) -> SequenceBuilder:
-    """Move the first group of legs that can be lifted."""
+    """Move the first group of legs, tripods before single ones, that can be lifted with three feet on the ground."""
     failure = TarsusError(
         f"only {int(builder.contacts.sum())} feet are on the ground; lifting one of them requires at least "
         f"{_MIN_STANCE_FEET + 1}"
     )
-    for group in _groups(builder, remaining):
-        try:
-            return _move(builder, group, angles, margin=builder.margin)
-        except TarsusError as error:
-            failure = error
-    raise failure
-
-
-def _groups(builder: SequenceBuilder, remaining: Bool[np.ndarray, "legs"]) -> Iterator[Bool[np.ndarray, "..."]]:
-    """Yield the groups to try, tripods before single legs, that leave three feet on the ground."""
     legs = np.arange(remaining.size)
-    groups = [remaining & (legs % 2 == parity) for parity in (0, 1)]
-    groups += [legs == leg for leg in np.flatnonzero(remaining)]
-    return (group for group in groups if group.any() and (builder.contacts & ~group).sum() >= _MIN_STANCE_FEET)
+    tripods = [remaining & (legs % 2 == parity) for parity in (0, 1)]
+    for group in (*tripods, *(legs == leg for leg in np.flatnonzero(remaining))):
+        if group.any() and (builder.contacts & ~group).sum() >= _MIN_STANCE_FEET:
+            try:
+                return _move(builder, group, angles, margin=builder.margin)
+            except TarsusError as error:
+                failure = error
+    raise failure
 
 
 def _move(
