@@ -67,6 +67,8 @@ def measured_state(
 ) -> SequenceBuilder:
     """Return a builder with a robot of which only the joint angles are known yet, as seen from the plane of its feet.
 
+    Its body is at the origin of G, and nothing bears load.
+
     Parameters
     ----------
     robot : Robot
@@ -148,9 +150,8 @@ def uneven_state(state: SequenceBuilder, loaded: Bool[np.ndarray, "legs"]) -> Se
     plane = fitted_plane((x + 1j * y).tolist(), z.tolist(), FootPlane(), 1.0)
     up = np.array([-plane.slope_x, -plane.slope_y, 1.0])
     rotation = levelling_rotation(up / np.linalg.norm(up))
-    return replace(
-        state, body=Pose(rotation, np.array([0.0, 0.0, -float((feet @ rotation[2]).min())])), contacts=loaded
-    )
+    body = Pose(rotation, np.array([0.0, 0.0, -float((feet @ rotation[2]).min())]))
+    return replace(state, body=body, contacts=loaded)
 
 
 def lying_state(state: SequenceBuilder, *, purpose: str) -> SequenceBuilder:
