@@ -10,9 +10,10 @@ from typing import TYPE_CHECKING, TypeAlias
 
 import numpy as np
 
-from tarsus.control.pose.vertical_loads import VerticalLoads
 from tarsus.control.readings import ValidReadings
+from tarsus.kinematics.mass import centre_of_mass, known_weight
 from tarsus.load.compliant.joint_springs import JointSprings
+from tarsus.load.foot_force import balanced_forces
 from tarsus.robot.robot import Robot
 
 if TYPE_CHECKING:
@@ -32,6 +33,12 @@ _LEAST = 1e-5
 _SHARE = 0.5
 # Friction that holds the feet of loaded legs where it needs no more.
 _FRICTION = 0.8
+# How fast the loads follow forces and contacts [1/s]: a foot that lands hard must not be pressed down further.
+_LOAD_RATE = 30.0
+# Share of all load from which on a foot bears load in full.
+_BEARS = 0.2
+# Least number of feet that share the weight by their contacts.
+_FEWEST = 3
 
 
 class DeflectionCompensation:
@@ -43,10 +50,14 @@ class DeflectionCompensation:
     that do not yield. Nothing is added where joint angles are not measured, loads or servos unknown, nor where
     friction holds the feet on the slope under them: compensated legs are stiffer, and lose contact on rough ground.
 
+    The loads are those of measured forces, else the robot's weight is shared out by contacts. Of measured forces only
+    what equilibrium asks for counts: more than three feet press against each other, too, and would do so more and more
+    where commands are compensated by them.
+
     Parameters
     ----------
     robot : Robot
-        A single robot.
+        A single robot. Without masses in its file contacts do not tell its loads.
 
     Attributes
     ----------
@@ -66,7 +77,9 @@ class DeflectionCompensation:
         self._since, self._joints, self._arms = _PERIOD, list[list[float]](), list[_Arms]()
         self._feet, self._sinks = list[tuple[float, float]](), list[float]()
         self._turns: Float[np.ndarray, "legs 3"] = np.zeros((robot.legs, 3))
-        self._loads, self._legs = VerticalLoads(robot), list[tuple[float, ...]]()
+        # The loads as they are followed; the centre of mass in B when it was first of use: it moves little [N, m].
+        self._loads, self._centre = [0.0] * robot.legs, list[float]()
+        self._robot, self._weight, self._legs = robot, known_weight(robot), list[tuple[float, ...]]()
         if all(all(leg) for leg in robot.servos):
             yields, g = (1 / JointSprings.of(robot).stiffness[:, 1:]).T, robot.geometry
             columns = (*robot.mount_position.T[:2], robot.mount_yaw, g.coxa, g.side, g.femur, g.tibia, *yields)
@@ -89,7 +102,8 @@ class DeflectionCompensation:
             Which feet bear load: they share the robot's weight out where forces are not measured.
         """
         if self.offsets is None:
-            if not (self._loads.are_known(valid) and self._legs):
+            loads_known = valid.forces is not None or self._weight > 0.0
+            if valid.joint_angles is None or not (loads_known and self._legs):
                 return
             self._needed = self._needed or self._needed_friction(angles)
             if self._needed + slope < _FRICTION:
@@ -98,7 +112,7 @@ class DeflectionCompensation:
         looks = self._since >= _PERIOD
         if looks:
             self._find_feet(angles.tolist())
-        loads = self._loads.step(valid, bears, dt, feet=self._feet, angles=angles)
+        loads = self._balanced_loads(valid, bears, angles, dt)
         if looks:
             wanted = _SHARE if self._needed + slope >= _FRICTION else 0.0
             self._share += min(_LEARNING_RATE * self._since, 1.0) * (wanted - self._share)
@@ -108,6 +122,31 @@ class DeflectionCompensation:
         self.offsets = np.array(loads)[:, None] * (-share * self._turns)
         lowered = share * max(map(mul, self._sinks, loads))
         self.lowered += min(_LEARNING_RATE * dt, 1.0) * (lowered - self.lowered)
+
+    def _balanced_loads(
+        self, valid: ValidReadings, bears: list[bool], angles: Float[np.ndarray, "legs 3"], dt: float
+    ) -> tuple[float, ...]:
+        """Return the loads of the feet; they follow what is measured, and go back to 0 where it is not any more [N].
+
+        A leg without joint angles, or without force where other legs have one, bears nothing.
+        """
+        if valid.forces is None:
+            measured = [self._weight / _FEWEST * on for on in bears]
+        else:
+            measured = [force[2] if force and force[2] > 0.0 else 0.0 for force in valid.forces]
+        follows, known = min(_LOAD_RATE * dt, 1.0), valid.joint_angles or (None,) * len(self._loads)
+        legs = zip(self._loads, measured, known, strict=True)
+        self._loads = loads = [load + follows * ((new if of_leg else 0.0) - load) for load, new, of_leg in legs]
+        total = sum(loads)
+        if not total:
+            return (0.0,) * len(loads)
+        full = _BEARS * total
+        bear = [load / full if load < full else 1.0 for load in loads]
+        if valid.forces is None:
+            self._centre = self._centre or centre_of_mass(self._robot, angles)[:2].tolist()
+            return balanced_forces(self._feet, bear, self._centre, min(total, self._weight))
+        x, y = (sum(map(mul, loads, column)) / total for column in zip(*self._feet, strict=True))
+        return balanced_forces(self._feet, bear, (x, y), total)
 
     def _find_feet(self, joints: list[list[float]]) -> None:
         """Find where the feet are, and what a load of 1 N on each turns its joints by."""
