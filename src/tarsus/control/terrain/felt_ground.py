@@ -22,7 +22,7 @@ from tarsus.control.transition.executor import TransitionExecutor
 from tarsus.control.transition.foothold_transfer import FootholdTransfer
 from tarsus.control.walk.felt_feet import FeltFoot, FeltInputs, GroundUnder, travel_share
 from tarsus.control.walk.state import GaitState
-from tarsus.control.walk.step_timing import NextLift, StepTiming
+from tarsus.control.walk.step_timing import StepTiming
 from tarsus.control.walk_state import TickState
 from tarsus.gait.foot_plane import FootPlane
 from tarsus.gait.stance.stance_geometry import SWING_HEIGHT
@@ -86,7 +86,7 @@ class FeltGround:
         # What feet are given while all is as planned; ticks and times since contacts and support were looked at.
         self._inputs: FeltInputs | None = None
         self._given: tuple[list[int], bool] = [], True
-        self._rests, self._ticks, self._unread, self._idle, self._next_lift = True, 0, 0.0, 0.0, NextLift()
+        self._rests, self._ticks, self._unread, self._idle = True, 0, 0.0, 0.0
 
     def sense(
         self, readings: SensorReadings | None, dt: float, state: GaitState, *, timing: StepTiming, angles: list[Vector]
@@ -154,11 +154,11 @@ class FeltGround:
         self._still = not any(tick.twist.tolist()) or (self.body.slope.refuses and self.support.halts)
         self._given = excluded, standing
         self._rests = self._still and not (self.missing.refuses or self.missing.places)
-        if kept and self._given == before and (standing or not self._next_lift.is_due(timing, state, dt)):
+        due = None if standing else timing.due(state, dt)
+        if kept and self._given == before and not (due and True in due):
             if self.body.rates is not kept.rates:
                 self._inputs = kept = kept._replace(rates=self.body.rates)
             return kept
-        due = None if standing else timing.due(state, dt)
         dt, self._idle = self._idle, 0.0
         steps = [leg not in excluded for leg in range(len(state.foot))]
         down = [on and step for on, step in zip(state.down.tolist(), steps, strict=True)]

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from operator import is_not
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -15,7 +14,7 @@ from tarsus.gait.stance.velocity_limits import stance_overhang
 if TYPE_CHECKING:
     from jaxtyping import Float
 
-__all__ = ["NextLift", "StepTiming"]
+__all__ = ["StepTiming"]
 
 # The twist follows its target within about one stance: faster, and standing feet would be left behind.
 _TIME_CONSTANTS_PER_STANCE = 4.0
@@ -68,14 +67,9 @@ class StepTiming(NamedTuple):
 
     def due(self, state: GaitState, dt: float) -> list[bool]:
         """Return which feet on the ground are due to lift off within a time [s]."""
-        clock = state.clock + self.frequency * dt
-        return [clock > lift for lift in self.lift_clocks(state)]
-
-    def lift_clocks(self, state: GaitState) -> list[float]:
-        """Return the clocks after which feet on the ground are due to lift off; infinity for those in the air."""
-        lifts = self.gait.duty_factor - PHASE_TOLERANCE
+        clock, lifts = state.clock + self.frequency * dt, self.gait.duty_factor - PHASE_TOLERANCE
         steps = zip(state.down.tolist(), self.gait.offsets, state.step_number.tolist(), strict=True)
-        return [offset + number + lifts if down else math.inf for down, offset, number in steps]
+        return [on and clock > offset + number + lifts for on, offset, number in steps]
 
     def stance_intervals(self, state: GaitState) -> tuple[Float[np.ndarray, "legs"], Float[np.ndarray, "legs"]]:
         """Return from when until when each foot stands where it is, or where it will be put down: shape (legs,) [s]."""
@@ -113,18 +107,3 @@ class StepTiming(NamedTuple):
         step = dt * now * now / 2
         reached = abs(frequency - now) <= step
         return self._replace(frequency=frequency if reached else now + math.copysign(step, frequency - now))
-
-
-class NextLift:
-    """When the next foot is due to lift off: looked up anew where gait or steps have changed."""
-
-    def __init__(self) -> None:
-        self._steps: tuple[object, ...] = ()
-        self._clock = math.inf
-
-    def is_due(self, timing: StepTiming, state: GaitState, dt: float) -> bool:
-        """Return whether any foot on the ground is due to lift off within a time [s]."""
-        steps = timing.gait, state.down, state.step_number
-        if not self._steps or any(map(is_not, steps, self._steps)):
-            self._steps, self._clock = steps, min(timing.lift_clocks(state))
-        return state.clock + timing.frequency * dt > self._clock
