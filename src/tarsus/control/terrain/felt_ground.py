@@ -90,8 +90,8 @@ class FeltGround:
 
     def sense(
         self, readings: SensorReadings | None, dt: float, state: GaitState, *, timing: StepTiming, angles: list[Vector]
-    ) -> tuple[GaitState, list[int]]:
-        """Return the gait state after the readings of a tick, and the legs whose feet have landed by them.
+    ) -> GaitState:
+        """Return the gait state after the readings of a tick.
 
         Parameters
         ----------
@@ -110,14 +110,14 @@ class FeltGround:
         measured = self._loads.contacts(valid, angles, state, dt)
         if not state.felt:
             if measured is None and valid.attitude is None:
-                return state, []
+                return state
             heights = np.array(state.heights(float(state.posture.value[SWING_HEIGHT])))
             state = state._replace(ground_height=heights, felt=[FeltFoot()] * len(heights))
         self.body.since, self._unread, self._ticks = self.body.since + dt, self._unread + dt, self._ticks + 1
         self.body.level(valid.attitude, state)
         kept = self._inputs is not None and not (stopped or self.body.looks)
         if kept and self.contacts.estimator.as_planned(measured, state, self.contacts.lifted):
-            return state, []
+            return state
         dt, ticks, self._unread, self._ticks, self._inputs = self._unread, self._ticks, 0.0, 0, None
         self.body.see(valid.attitude, state, dt)
         self.ground.see(valid, state)
@@ -133,11 +133,10 @@ class FeltGround:
         if self.missing.stranded and all(down):
             state = timing.with_first_lift(state, self.missing.stranded[0])
         pace = self.support.pace
-        state, landed = met_ground(state, self.body, self.missing, stopped=stopped, timing=timing, pace=pace)
+        state = met_ground(state, self.body, self.missing, stopped=stopped, timing=timing, pace=pace)
         if self.missing.tips or self.condition.carried or (self.missing.refuses and self.support.halts):
-            state, swung = put_down(state, timing=timing, pace=pace)
-            landed += swung
-        return state, landed
+            state = put_down(state, timing=timing, pace=pace)
+        return state
 
     def inputs(self, tick: TickState, transitions: TransitionExecutor, excluded: list[int], dt: float) -> FeltInputs:
         """Return what the feet and the body do in a tick.

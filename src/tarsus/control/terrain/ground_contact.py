@@ -7,6 +7,8 @@ import math
 from collections.abc import Sequence
 from typing import Any
 
+import numpy as np
+
 from tarsus.control.sensing.swing_monitor import USUAL_LAG
 from tarsus.control.terrain.body_motion import BodyMotion
 from tarsus.control.terrain.foot_contacts import FootContacts
@@ -43,8 +45,8 @@ _PUSHES = 0.03
 
 def met_ground(
     state: GaitState, body: BodyMotion, missing: MissingGround, *, stopped: list[int], timing: StepTiming, pace: float
-) -> tuple[GaitState, list[int]]:
-    """Return the gait state in which feet that meet ground have landed or rise again, and which have landed.
+) -> GaitState:
+    """Return the gait state in which feet that meet ground have landed or rise again.
 
     Parameters
     ----------
@@ -56,7 +58,7 @@ def met_ground(
     timing, pace : StepTiming, float
         The gait and its frequency; rate of the steps, 0 to 1.
     """
-    contacts, reach, landed, elevation = body.contacts, body.reach, list[int](), state.elevation
+    contacts, reach, elevation = body.contacts, body.reach, state.elevation
     places = state.in_heading(state.foot).tolist()
     for leg, (down, phase) in enumerate(zip(state.down.tolist(), state.swing_phase.tolist(), strict=True)):
         foot, stops = state.felt[leg], leg in stopped
@@ -70,7 +72,6 @@ def met_ground(
         if not leaves and _collides_again(state, leg, side=side, stopped=stops, scale=reach.scale):
             contacts.draws_back(leg)
             state = _trying_again(state, leg, missing, body, _landed(state, leg, timing, pace))
-            landed.append(leg)
         elif phase > _LANDING or (pace < HALTING and _stands_below(state, leg, contacts, scale=reach.scale)):
             # Contact that has not ceased since lift-off tells nothing: the foot lands where ground is expected. Nor
             # does that of a foot that rises along an obstacle.
@@ -87,15 +88,14 @@ def met_ground(
                     off, sunk = over - expected, max(contacts.sunk[leg], 0.0)
                     body.roughness.landed(min(off, max(off - sunk, 0.0)))
                 state = _landed(state, leg, timing, pace)
-                landed.append(leg)
         elif (meets or stops) and not leaves and _collides(state, leg, contacts, stopped=stops, scale=reach.scale):
             body.roughness.collided()
             state = _rising_again(state, leg, body, timing)
-    return state, landed
+    return state
 
 
-def put_down(state: GaitState, *, timing: StepTiming, pace: float) -> tuple[GaitState, list[int]]:
-    """Return the state with all feet put down where they are, and which swung.
+def put_down(state: GaitState, *, timing: StepTiming, pace: float) -> GaitState:
+    """Return the state with all feet put down where they are.
 
     Parameters
     ----------
@@ -104,14 +104,13 @@ def put_down(state: GaitState, *, timing: StepTiming, pace: float) -> tuple[Gait
     timing, pace : StepTiming, float
         The gait and its frequency; rate of the steps, 0 to 1.
     """
-    swings, number = [leg for leg, on in enumerate(state.down.tolist()) if not on], state.step_number.copy()
+    swings = ~state.down
     # Feet that are far from their footholds are still due to lift off.
-    number[(state.swing_phase < _LANDING) & ~state.down] -= 1
-    state = state._replace(step_number=number)
-    for leg in swings:
+    state = state._replace(step_number=state.step_number - (swings & (state.swing_phase < _LANDING)))
+    for leg in np.flatnonzero(swings).tolist():
         state = _landed(state, leg, timing, pace)
         state = state._replace(felt=_with(state.felt, leg, speed=0.0, acceleration=0.0))
-    return state, swings
+    return state
 
 
 def _landed(state: GaitState, leg: int, timing: StepTiming, pace: float) -> GaitState:

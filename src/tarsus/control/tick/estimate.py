@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import numpy as np
-
 from tarsus.control.readings import SensorReadings
 from tarsus.control.tick.components import WalkComponents
 from tarsus.control.walk_state import TickState
@@ -24,7 +22,7 @@ def estimated(walk: WalkComponents, tick: TickState, readings: SensorReadings | 
     if readings is None and not tick.gait.felt:
         return tick
     timing, angles = walk.transitions.timing, walk.time_scaling.angles
-    state, legs = walk.ground.sense(readings, dt, tick.gait, timing=timing, angles=angles.tolist())
+    state = walk.ground.sense(readings, dt, tick.gait, timing=timing, angles=angles.tolist())
     if not state.felt:
         # The guard checks the feet of a walk that does not feel the ground: compensated, they drag.
         return tick
@@ -34,6 +32,5 @@ def estimated(walk: WalkComponents, tick: TickState, readings: SensorReadings | 
     bears = [on and ground.contacts.touches(leg) for leg, on in enumerate(down)]
     deflection.step(ground.body.measured, angles, dt, slope=abs(ground.body.stance.uphill), bears=bears)
     ground.body.lowered = deflection.lowered
-    if legs:
-        walk.transitions.footholds.feet_landed(np.isin(np.arange(len(state.down)), legs))
+    walk.transitions.footholds.feet_landed(tick.gait.down, state.down)
     return tick if state is tick.gait else tick._replace(gait=state)

@@ -74,9 +74,7 @@ def _step_inputs(walk: WalkComponents, tick: TickState, dt: float) -> StepInputs
 
 def _finished(walk: WalkComponents, tick: TickState, state: GaitState, dt: float) -> TickState:
     """Return the state, once steps, transitions and searches that end with the tick have ended."""
-    landed = None if state.down is tick.gait.down else state.down & ~tick.gait.down
-    if landed is not None and landed.any():
-        walk.transitions.footholds.feet_landed(landed)
+    walk.transitions.footholds.feet_landed(tick.gait.down, state.down)
     state = walk.transitions.finish(state, dt)
     if tick.standing:
         return tick._replace(gait=state)

@@ -89,10 +89,11 @@ class FootholdTransfer:
         self._next_bounds, self.new_rest = transition.stepping_limits.bounds, transition.rest
         self._update_placement()
 
-    def feet_landed(self, landed: Bool[np.ndarray, "legs"]) -> None:
-        """Take note of the feet that landed in this tick."""
-        if self.bounds is self._next_bounds and self.transferred.all():
+    def feet_landed(self, before: Bool[np.ndarray, "legs"], down: Bool[np.ndarray, "legs"]) -> None:
+        """Take note of the feet that have landed: those that are on the ground, and were not before."""
+        if down is before or (self.bounds is self._next_bounds and self.transferred.all()):
             return
+        landed = down & ~before
         self._level_rest = np.where(landed, self.new_rest, self._level_rest)
         counts, self._lands_at_old = landed & ~self._lands_at_old, self._lands_at_old & ~landed
         self.transferred = self.transferred | counts
