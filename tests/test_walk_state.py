@@ -24,8 +24,3 @@ def test_a_robot_stops_before_it_stands():
     for state in set(WalkState) - {WalkState.STANDING, WalkState.STOPPING}:
         assert next_walk_state(state, **at_rest) is WalkState.STOPPING
     assert next_walk_state(WalkState.STOPPING, **at_rest) is WalkState.STANDING
-
-
-@pytest.mark.parametrize(("follows_twist", "expected"), [(True, WalkState.WALKING), (False, WalkState.STOPPING)])
-def test_a_standing_robot_that_starts_to_step_walks_or_stops(follows_twist, expected):
-    assert next_walk_state(WalkState.STANDING, follows_twist=follows_twist, at_rest=False) is expected

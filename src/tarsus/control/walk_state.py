@@ -39,7 +39,7 @@ def next_walk_state(
     Parameters
     ----------
     state : WalkState
-        The present state; a standing robot is asked only once it starts to step.
+        The present state; not one in which the robot stands.
     follows_twist : bool
         Whether the twist to follow is not zero.
     at_rest : bool

@@ -11,7 +11,7 @@ from tarsus.control.limiter.protocol import TwistGrant, TwistLimiter, TwistReque
 from tarsus.control.limiter.reference_governor import GovernorLimiter
 from tarsus.control.limiter.workspace import WorkspaceLimiter
 from tarsus.control.tick.components import WalkComponents
-from tarsus.control.walk_state import TickState, next_walk_state
+from tarsus.control.walk_state import TickState, WalkState
 
 __all__ = ["limited", "twist_limiters"]
 
@@ -67,7 +67,6 @@ def limited(
         # Every foot stays on the ground until the body is over those that stay.
         return tick._replace(gait=state if steps else tick.gait, limitations=grant.limitations)
     assert grant.target is not None  # the governor sets it
-    following = tick.walk_state
-    if standing:
-        following = next_walk_state(following, follows_twist=bool(grant.target.any()), at_rest=False)
+    # What a robot does that stands no more is found at the end of the tick.
+    following = WalkState.STOPPING if standing else tick.walk_state
     return TickState(state, grant.target, following, grant.limitations)
