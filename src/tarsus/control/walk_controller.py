@@ -119,7 +119,7 @@ class WalkController:
                 raise InputError(f"{name} is {value!r}; it must be of class {kind.__name__}")
         body = BodyMotion(self.robot, levelling=levelling, adaptation=adaptation)
         loads = FootLoads(self.robot, admittance)
-        self._walk = WalkComponents(self.robot, limits, planner=planner, stance=stance, body=body, loads=loads)
+        self._walk = WalkComponents(planner, stance, body=body, loads=loads)
         self._tick = TickState(self._walk.initial, np.zeros(3))
         self._intake = CommandIntake(self.robot, self._walk.transitions)
         self._twist_limiters = twist_limiters(self._walk)

@@ -12,8 +12,6 @@ from tarsus.control.walk.foot_targets import FootTargets
 from tarsus.control.walk.joint_solver import JointSolver
 from tarsus.control.walk.state import GaitState
 from tarsus.control.walk.time_scaling import TimeScaling
-from tarsus.robot.joint_limits import JointLimits
-from tarsus.robot.robot import Robot
 
 __all__ = ["WalkComponents"]
 
@@ -23,10 +21,8 @@ class WalkComponents:
 
     Parameters
     ----------
-    robot, limits : Robot, JointLimits
-        The robot; greatest speeds and accelerations of its joints.
     planner, stance : TransitionPlanner, StanceTransition
-        Plans stance transitions; the stance at the start.
+        Plans stance transitions of the robot; the stance at the start.
     body, loads : BodyMotion, FootLoads
         How the body moves on ground that is felt; the loads of the feet.
 
@@ -51,18 +47,12 @@ class WalkComponents:
     """
 
     def __init__(
-        self,
-        robot: Robot,
-        limits: JointLimits,
-        *,
-        planner: TransitionPlanner,
-        stance: StanceTransition,
-        body: BodyMotion,
-        loads: FootLoads,
+        self, planner: TransitionPlanner, stance: StanceTransition, *, body: BodyMotion, loads: FootLoads
     ) -> None:
-        self.robot, self.planner = robot, planner
+        self.planner = planner
+        self.robot = robot = planner.robot
         self.foot_targets, self.solver = FootTargets(robot), JointSolver(robot)
         self.transitions = TransitionExecutor(stance, self.foot_targets, scale=body.reach.scale)
         self.initial = GaitState.standing(stance.rest, self.transitions.pose.target)
-        self.time_scaling = TimeScaling(self.solver.angles(self.initial), limits, robot.limits)
+        self.time_scaling = TimeScaling(self.solver.angles(self.initial), planner.joint_limits, robot.limits)
         self.ground = FeltGround(robot, self.time_scaling.angles, body=body, loads=loads)

@@ -45,10 +45,15 @@ class TransitionPlanner:
     ----------
     robot, joint_limits, foot_distance : Robot, JointLimits, float
         A single robot; greatest speed and acceleration of each joint; least distance between two feet [m].
+
+    Attributes
+    ----------
+    robot, joint_limits : Robot, JointLimits
+        As given.
     """
 
     def __init__(self, robot: Robot, joint_limits: JointLimits, *, foot_distance: float) -> None:
-        self._robot, self._joint_limits, self._foot_distance = robot, joint_limits, foot_distance
+        self.robot, self.joint_limits, self._foot_distance = robot, joint_limits, foot_distance
 
     def initial_stance(self, setup: WalkSetup, *, stance_width: float, cycle_time: float | None) -> StanceTransition:
         """Return the stance that the setup of a walk asks for.
@@ -79,7 +84,7 @@ class TransitionPlanner:
             stance_width=stance_width,
             cycle_time=cycle_time,
         )
-        stance = StanceTarget.of(self._robot, parameters, setup.rest)
+        stance = StanceTarget.of(self.robot, parameters, setup.rest)
         found = complete(self.plan(parameters, stance, stay=True))
         if isinstance(found, Cause):
             raise UnreachableError(f"the robot can't stand and step in this stance: {found.text()}")
@@ -107,7 +112,7 @@ class TransitionPlanner:
         UnreachableError
             If no leg reaches the ground at the body height.
         """
-        robot = self._robot
+        robot = self.robot
         end = present if stay else target_stance(robot, parameters, present)
         yield
         reachable, cause = 1.0, None
@@ -169,7 +174,7 @@ class TransitionPlanner:
         """Find cycle time and limits on the way to a stance; `limits` are those in it."""
         gait = parameters.gait
         timing = yield from cycle_timing(
-            self._robot, gait, goal.stand, limits, self._joint_limits, cycle_time=parameters.cycle_time
+            self.robot, gait, goal.stand, limits, self.joint_limits, cycle_time=parameters.cycle_time
         )
         final = with_stroke_limits(limits, timing.stroke, timing.turning, duty_factor=gait.duty_factor)
         yield
@@ -186,15 +191,15 @@ class TransitionPlanner:
             )
         if not on_path.balanced:
             return TIPPING._replace(reason=f"{TIPPING.reason} on the way")
-        return Cause("could not stand and step on the way", self._robot.leg_names[on_path.limiting_leg])
+        return Cause("could not stand and step on the way", self.robot.leg_names[on_path.limiting_leg])
 
     def _limits(self, parameters: WalkParameters, stance: StanceTarget) -> Incremental[VelocityLimits]:
         """Find the limits in a stance, with its sway or the body shift of its gait."""
         gait, excluded, distance = parameters.gait, parameters.excluded, self._foot_distance
         if gait.body_shift:
-            return shifted_limits(self._robot, gait, stance.stand, foot_distance=distance)
+            return shifted_limits(self.robot, gait, stance.stand, foot_distance=distance)
         stands = [stance._replace(posture=row).stand for row in sway_extremes(stance.posture, parameters.sway)]
-        return velocity_limits(self._robot, gait, stands, foot_distance=distance, excluded=excluded)
+        return velocity_limits(self.robot, gait, stands, foot_distance=distance, excluded=excluded)
 
     def _path_limits(
         self, parameters: WalkParameters, start: StanceTarget, goal: StanceTarget, final: VelocityLimits
@@ -213,14 +218,14 @@ class TransitionPlanner:
         if not limits.balanced:
             return TIPPING
         if any(parameters.sway):
-            return Cause("end of the leg's reach as the body sways", self._robot.leg_names[limits.limiting_leg])
-        return reach_cause(self._robot, stance.stand)
+            return Cause("end of the leg's reach as the body sways", self.robot.leg_names[limits.limiting_leg])
+        return reach_cause(self.robot, stance.stand)
 
     def _shortfalls(
         self, parameters: WalkParameters, end: StanceTarget, reached: StanceTarget, cause: Cause
     ) -> tuple[Limitation, ...]:
         """Return what of the commanded stance, at the end, is not feasible."""
-        mount = self._robot.geometry.mount_x + 1j * self._robot.geometry.mount_y
+        mount = self.robot.geometry.mount_x + 1j * self.robot.geometry.mount_y
         missing = float((np.abs(end.rest - mount) - np.abs(reached.rest - mount)).mean())
         width = parameters.stance_width - missing
         return stance_limitations(parameters, reached.posture, cause, stance_width=width)
