@@ -240,8 +240,7 @@ class WalkController:
     @property
     def twist(self) -> Float[np.ndarray, "3"]:
         """The present twist: array, shape (3,): forward, left [m/s], turning [rad/s]."""
-        pace = self._walk.ground.support.pace if self.feels_ground else 1.0
-        return self._tick.gait.twist.value * self._walk.time_scaling.rate * pace
+        return self._tick.gait.twist.value * self._walk.time_scaling.rate * self._walk.ground.support.pace
 
     @property
     def margin(self) -> float:
