@@ -687,8 +687,8 @@ def test_a_foot_that_lifts_the_body_off_all_others_that_would_hold_it_has_an_ope
             ticks += 1
             take_in(contacts, readings, [True] * 6, 0.01)
             # Hanging feet are high over the ground, and may bear no load by other rules.
-            none = STANDING._replace(down=[False] * 6, centre=-0.05 + 0j)
-            find_open(contacts, none, tilt, 0.01, low=[*[True] * 5, False], depths=depths)
+            behind = STANDING._replace(centre=-0.05 + 0j)
+            find_open(contacts, behind, tilt, 0.01, low=[*[True] * 5, False], depths=depths)
         return [leg for leg in range(6) if contacts.is_open(leg)], ticks
 
     legs, ticks = found((-0.1, 0.0))

@@ -213,11 +213,11 @@ class FeltGround:
     def _find_ground(self, state: GaitState, footing: Footing, footholds: FootholdTransfer, dt: float) -> list[bool]:
         """Decide where feet step that find no ground; return which stand, or would, with the robot in the air."""
         contacts, missing, deeper = self.contacts, self.missing, self.body.roughness.deeper
-        near, low = not_sunk(state, self.body, footing, tips=bool(missing.tips or missing.places))
+        low = not_sunk(state, self.body, footing, tips=bool(missing.tips or missing.places))
         tilt = self.body.measured.attitude and off_commanded(self.body.measured.attitude, state)
         feet = zip(footing.places, state.ground_height.tolist(), strict=True)
         depths = [self.ground.at(place) + state.elevation - height for place, height in feet]
-        contacts.find_open(footing._replace(down=near), tilt, dt, low=low, depths=depths)
+        contacts.find_open(footing, tilt, dt, low=low, depths=depths)
         missing.twist = state.twist.value.tolist()
         missing.turn_to(state.yaw)
         if self.condition.carried:
@@ -227,7 +227,7 @@ class FeltGround:
         held = [self.condition.in_air or contacts.stands(leg) for leg in range(len(depths))]
         stands = [on and not missing.steps_back(leg, footing.places[leg]) for leg, on in enumerate(held)]
         missing.sees(self.ground, footholds.rest.tolist())
-        waits = self.condition.carried or (self._rests and self.support.held and near == footing.down)
+        waits = self.condition.carried or (self._rests and self.support.held and low == footing.down)
         searches = [] if waits else self._searches(state, footing, stands)
         missing.lost = contacts.tips(footing, deeper)
         if self._loads.estimated:

@@ -142,11 +142,12 @@ class FootContacts:
         tilt, dt : (roll, pitch) or None, float
             Measured, off the attitude to keep [rad], None where it is not; time since the last tick [s].
         low, depths : list of bool, sequence of float
-            Which feet may have lifted the body that the others do not hold; how far below the expected ground they are
-            [m]: the deepest has lifted it.
+            Which feet may bear load that is not felt: without one of them, only a foot that has lifted the body does
+            that the others do not hold. How far below the expected ground they are [m]: the deepest has lifted it.
         """
         self._follow(footing.places, tilt)
         alone = self._lifting_alone(footing._replace(down=low), tilt)
+        footing = footing._replace(down=low if low == footing.down else [False] * len(low))
         if lifts := alone or self._lifting(footing.down, tilt):
             leg = max(lifts, key=depths.__getitem__)
             self._evidence[leg] += dt * lifts[leg]

@@ -203,11 +203,11 @@ def _with(feet: Sequence[FeltFoot], leg: int, **values: Any) -> list[FeltFoot]:
     return [foot._replace(**values) if index == leg else foot for index, foot in enumerate(feet)]
 
 
-def not_sunk(state: GaitState, body: BodyMotion, footing: Footing, *, tips: bool) -> tuple[list[bool], list[bool]]:
-    """Return which feet should stand and may bear load that is not felt; and which may where one lifts the body.
+def not_sunk(state: GaitState, body: BodyMotion, footing: Footing, *, tips: bool) -> list[bool]:
+    """Return which feet should stand and may bear load that is not felt.
 
-    None may while one of them is deep, or at the end of its reach: its leg may rest on an edge. Nor while one is high
-    over the ground, as of a robot that leans against a wall, unless another foot has lifted it there.
+    None may while one of them is deep, or at the end of its reach: its leg may rest on an edge. One that is high over
+    the ground does not, as of a robot that leans against a wall.
 
     Parameters
     ----------
@@ -225,10 +225,7 @@ def not_sunk(state: GaitState, body: BodyMotion, footing: Footing, *, tips: bool
         # A foot that has lifted the body is as much higher over the ground.
         deep |= on and (off + max(-sunk_at(place, body.off), 0.0) <= -most or hangs)
         low.append(on and off < high)
-    none = [False] * len(low)
-    if deep:
-        return none, none
-    return low if low == footing.down else none, low
+    return [False] * len(low) if deep else low
 
 
 def hovering(state: GaitState, contacts: FootContacts, depths: Sequence[float]) -> list[int]:
