@@ -32,14 +32,12 @@ class PendingTransitionLimiter:
 
     def limit(self, request: TwistRequest, grant: TwistGrant) -> TwistGrant:
         """Return the grant, reduced by the time that the transition has been waiting."""
-        self._fraction = self._fraction * math.exp(-request.dt / _TIME_CONSTANT) if self._transitions.waiting else 1.0
-        planned = self._transitions.scheduler.planned
-        if planned is not None and self._transitions.timing.stands_before(planned.parameters.gait):
-            self._fraction = 0.0
-        if self._fraction == 1.0:
-            # What makes up for lost time stays.
+        if not self._transitions.waiting:
+            self._fraction = 1.0
             return grant
-        if self._fraction < _REPORTED and any(request.twist):
-            slow = Limitation(kind=LimitationKind.TWIST, cause=_CAUSE, asked=1.0, granted=self._fraction)
-            return grant.at_most(self._fraction, slow)
-        return grant.at_most(self._fraction)
+        planned = self._transitions.scheduler.planned
+        stands = planned is not None and self._transitions.timing.stands_before(planned.parameters.gait)
+        self._fraction *= 0.0 if stands else math.exp(-request.dt / _TIME_CONSTANT)
+        slow = Limitation(kind=LimitationKind.TWIST, cause=_CAUSE, asked=1.0, granted=self._fraction)
+        reported = self._fraction < _REPORTED and any(request.twist)
+        return grant.at_most(self._fraction, *([slow] if reported else []))
