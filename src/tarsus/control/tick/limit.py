@@ -24,8 +24,6 @@ def twist_limiters(walk: WalkComponents) -> list[TwistLimiter]:
         if ground.condition.carried:
             return None
         pace = ground.support.pace * walk.time_scaling.rate * (not ground.missing.refuses)
-        if not ground.missing.back:
-            return pace
         velocity = complex(*twist[:2])
         backs = (ground.missing.back * velocity.conjugate()).real / max(abs(velocity) ** 2, 1e-6)
         return min(backs, 0.0) + pace
