@@ -65,7 +65,7 @@ def _step_inputs(walk: WalkComponents, tick: TickState, dt: float) -> StepInputs
         placement_radii=footholds.placement_radii,
         admittance_offset=offsets,
         hold_feet=hold_feet,
-        excluded=parameters.excluded if walk.foot_targets else (),
+        excluded=parameters.excluded,
         unstepped=transitions.unstepped,
         shift=pose.shift,
         felt=felt,

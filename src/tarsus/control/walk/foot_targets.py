@@ -116,9 +116,6 @@ class FootTargets:
         self._points: dict[int, Sequence[float]] = {}
         self.limitations: list[Limitation] = []
 
-    def __bool__(self) -> bool:
-        return bool(self._motions)
-
     @property
     def legs(self) -> list[int]:
         """Legs that bear no load: those taken out of the gait, and those that return to it with their next step."""
