@@ -29,6 +29,7 @@ __all__ = [
     "only_where_needed",
     "read_only",
     "require_finite",
+    "require_finite_float",
     "require_float",
     "require_shape",
     "root",
@@ -150,6 +151,24 @@ def require_float(name: str, value: float) -> float:
         return float(value)
     except (TypeError, ValueError):
         raise InputError(f"{name} is {value!r}; it must be a number") from None
+
+
+def require_finite_float(name: str, value: float) -> float:
+    """Return a finite number as a float.
+
+    Parameters
+    ----------
+    name, value : str, float
+        Its name in messages; the number.
+
+    Raises
+    ------
+    InputError
+        If it is not a number, or not finite.
+    """
+    number = require_float(name, value)
+    require_finite(name, np.array(number))
+    return number
 
 
 def require_finite(name: str, array: Num[Array, "..."]) -> None:

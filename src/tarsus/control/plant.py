@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, Protocol, runtime_checkable
 
 import numpy as np
 
-from tarsus.arrays import require_finite, require_float
+from tarsus.arrays import require_finite_float
 from tarsus.control.control_output import ControlOutput
 from tarsus.control.readings import RollPitch, SensorReadings
 from tarsus.kinematics.mass import known_weight
@@ -72,7 +72,7 @@ class Environment:
     def __init__(self, robot: Robot) -> None:
         self._weight = known_weight(robot)
         self._height, self._force = np.zeros(robot.legs), np.zeros(robot.legs)
-        self._tilt = np.zeros(2)
+        self._tilt = 0.0, 0.0
         self._contacts = self._attitude = self._forces = False
 
     def set_ground(self, leg: int, height: float) -> None:
@@ -84,7 +84,7 @@ class Environment:
             Number of the leg; over flat ground [m].
         """
         require_leg_number("environment", leg, len(self._height))
-        self._height[leg], self._contacts = _finite("height", height), True
+        self._height[leg], self._contacts = require_finite_float("height", height), True
 
     def set_tilt(self, roll: float, pitch: float) -> None:
         """Set by how much the ground is tilted; an attitude sensor is present from then on.
@@ -94,7 +94,8 @@ class Environment:
         roll, pitch : float
             Left side up, front down, as the robot sees it wherever it turns [rad].
         """
-        self._tilt, self._attitude = np.array([_finite("roll", roll), _finite("pitch", pitch)]), True
+        self._tilt = require_finite_float("roll", roll), require_finite_float("pitch", pitch)
+        self._attitude = True
 
     def set_force(self, leg: int, force: float) -> None:
         """Set the vertical force on a foot beyond its share of the weight; load cells are present from then on.
@@ -105,7 +106,7 @@ class Environment:
             Number of the leg; ground on foot [N].
         """
         require_leg_number("environment", leg, len(self._force))
-        self._force[leg], self._forces = _finite("force", force), True
+        self._force[leg], self._forces = require_finite_float("force", force), True
 
     def readings(self, output: ControlOutput) -> dict[str, Any]:
         """Return what is measured, by the names of `SensorReadings`.
@@ -138,13 +139,6 @@ class Environment:
         centre = feet[:, :2].mean(axis=0)
         share = balanced_forces(feet.tolist(), bears.tolist(), centre.tolist(), self._weight)
         return np.where(bears, np.array(share) + self._force, 0.0)
-
-
-def _finite(name: str, value: float) -> float:
-    """Return a finite number as a float."""
-    number = require_float(name, value)
-    require_finite(name, np.array(number))
-    return number
 
 
 @represented("robot")

@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import replace
 
 import numpy as np
 
-from tarsus.arrays import require_float
+from tarsus.arrays import require_finite_float
 from tarsus.control.incremental import Incremental, complete
 from tarsus.control.limitation import Cause, Limitation, LimitationKind
 from tarsus.control.transition.feasible_fraction import (
@@ -21,7 +20,7 @@ from tarsus.control.transition.shortfalls import UNREACHABLE, stance_limitations
 from tarsus.control.transition.stance_transition import StanceTarget, StanceTransition, WalkParameters, target_stance
 from tarsus.control.workspace.cycle_time import CycleTiming, cycle_timing
 from tarsus.control.workspace.stance_limits import shifted_limits, velocity_limits
-from tarsus.errors import InputError, UnreachableError
+from tarsus.errors import UnreachableError
 from tarsus.gait.stance.stability import StabilityCheck, support_sets
 from tarsus.gait.stance.stance_geometry import sway_extremes
 from tarsus.gait.stance.velocity_limits import VelocityLimits, with_stroke_limits
@@ -72,9 +71,7 @@ class TransitionPlanner:
         UnreachableError
             If the robot can't stand and step so.
         """
-        stance_width = require_float("stance_width", stance_width)
-        if not math.isfinite(stance_width):
-            raise InputError(f"stance_width is {stance_width} m; it must be a finite number")
+        stance_width = require_finite_float("stance_width", stance_width)
         if cycle_time is not None:
             cycle_time = require_number("cycle_time", cycle_time, zero=False)
         parameters = WalkParameters(
