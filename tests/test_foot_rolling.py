@@ -237,5 +237,5 @@ def test_balls_roll_from_the_inclination_of_the_tibia_at_rest(seed):
     np.testing.assert_allclose(rolling.balls(posture), np.stack([radius, at_rest], axis=-1), atol=1e-12)
     rows = [tuple(row) for row in pose.rotation.tolist()]
     feet_at = [tuple(foot) for foot in feet.tolist()]
-    found = rolling.rolled(feet_at, [0.0] * 6, tuple(rows), (x, y, z), posture=posture)
+    found = rolling.rolled(feet_at, [0.0] * 6, (tuple(rows), (x, y, z)), posture=posture)
     np.testing.assert_allclose(found, feet, atol=1e-14)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from math import atan2, sqrt
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeAlias
 
 import numpy as np
 
@@ -17,6 +17,9 @@ if TYPE_CHECKING:
     from jaxtyping import Bool, Complex, Float
 
 __all__ = ["FootRolling"]
+
+# Rotation of the body, and position of its origin [m].
+_Body: TypeAlias = tuple[Rows, Sequence[float]]
 
 # Bandwidth with which other rest footholds, or a leg out of the gait, are followed: within a swing [rad/s].
 _BANDWIDTH = 12.0
@@ -119,19 +122,13 @@ class FootRolling:
         *position, roll, pitch, yaw = posture[:SWING_HEIGHT].tolist()
         level = [0.0] * len(x)
         rest = list(zip(x, y, level, strict=True))
-        legs = self._legs_over_ground(rest, level, rotation_rows(roll, pitch, yaw), position)
+        legs = self._legs_over_ground(rest, level, (rotation_rows(roll, pitch, yaw), position))
         self._balls = [(ball, ball * leg[2]) for ball, leg in zip(radius, legs, strict=True)]
         self._solved = posture, self._filter
         return self._balls
 
     def rolled(
-        self,
-        feet: Sequence[Vector],
-        standing: Sequence[float],
-        rotation: Rows,
-        position: Sequence[float],
-        *,
-        posture: Float[np.ndarray, "_"],
+        self, feet: Sequence[Vector], standing: Sequence[float], body: _Body, *, posture: Float[np.ndarray, "_"]
     ) -> list[Vector]:
         """Return the feet with their balls rolled.
 
@@ -142,12 +139,12 @@ class FootRolling:
         standing : sequence of float
             The height in that frame at which each foot stands [m]: how far a foot has rolled does not depend on how
             high it is lifted, so that it leaves the ground and lands as it stands.
-        rotation, position : three rows, (x, y, z)
-            Rotation of the body in that frame; position of the body's origin in that frame [m].
+        body : (three rows, (x, y, z))
+            Rotation of the body, and position of its origin, in that frame [m].
         posture : array, shape (7,) or more
             The posture, without what the body moves beyond it, for which a foot at rest is at its rest foothold.
         """
-        legs = zip(feet, self.balls(posture), self._legs_over_ground(feet, standing, rotation, position), strict=True)
+        legs = zip(feet, self.balls(posture), self._legs_over_ground(feet, standing, body), strict=True)
         found = []
         for (fx, fy, fz), (radius, at_rest), (x, y, inclination, bend, out) in legs:
             # A Newton step: the tibia turns further as the foot moves.
@@ -157,11 +154,10 @@ class FootRolling:
         return found
 
     def _legs_over_ground(
-        self, feet: Sequence[Vector], heights: Sequence[float], rotation: Rows, position: Sequence[float]
+        self, feet: Sequence[Vector], heights: Sequence[float], body: _Body
     ) -> list[tuple[float, float, float, float, float]]:
         """Return each leg's direction over the ground, its tibia's inclination, and the bend and reach of its knee."""
-        (r00, r01, r02), (r10, r11, r12), (r20, r21, r22) = rotation
-        px, py, pz = position
+        ((r00, r01, r02), (r10, r11, r12), (r20, r21, r22)), (px, py, pz) = body
         found = []
         for (fx, fy, _), height, leg in zip(feet, heights, self._legs, strict=True):
             mx, my, mz, coxa, side, side2, farthest2, nearest2, difference2 = leg

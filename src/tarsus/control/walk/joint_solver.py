@@ -63,7 +63,7 @@ class JointSolver:
             bottoms = zip(state.ground_height.tolist(), offsets, strict=True)
             standing = [height + offset - state.elevation for height, offset in bottoms]
             # About the rest at the posture that is solved: at an earlier one, the next tick would catch up at once.
-            feet = self.rolling.rolled(feet, standing, rotation, position, posture=state.posture.value)
+            feet = self.rolling.rolled(feet, standing, (rotation, position), posture=state.posture.value)
         found: Any = self._scalar_solver.angles(feet, rotation, position)
         if found is None:
             found = inverse_kinematics(self._robot, (np.array(feet) - position) @ np.array(rotation)).angles
