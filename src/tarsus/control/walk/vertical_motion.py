@@ -175,9 +175,7 @@ def _swinging(
         over = max(start, under.expected, under.way) + felt.swing_height
         highest = max(under.highest, under.bowed)
         top = max(min(over, highest, fits, rises), height)
-        bow = under.bow
-        if bow:
-            bow = bow * max(min(top, highest) - under.highest, 0.0) / max(highest - under.highest, ROUNDING)
+        bow = under.bow * max(min(top, highest) - under.highest, 0.0) / max(highest - under.highest, ROUNDING)
         if under.steep and 0.0 < phase < _RISING_FIRST:
             drawn_back, top_phase = place, _STEEP_TOP_PHASE
     if phase < top_phase:
