@@ -85,8 +85,11 @@ class TransitionScheduler:
             If no gait has the name.
         """
         before, changes = self.requested, command.parameters
-        if "gait" in changes:
-            changes["gait"] = _gait(before.gait, changes["gait"])
+        gait = changes.get("gait", before.gait)
+        if isinstance(gait, str):
+            gait = before.gait if gait == before.gait.name else Gait.named(gait, legs=before.gait.legs)
+        gait.require_legs(before.gait.legs)
+        changes["gait"] = gait
         if changes.get("cycle_time") == "auto":
             changes["cycle_time"] = None
         asked = dataclasses.replace(before, correction=correction, excluded=excluded, **changes)
@@ -173,10 +176,3 @@ class TransitionScheduler:
         # Halfway to others, the current parameters have to be met anew.
         met = parameters == self.current.parameters and (stay or not self._between)
         return not met and parameters not in self._rejections
-
-
-def _gait(before: Gait, gait: Gait | str) -> Gait:
-    if isinstance(gait, str):
-        gait = before if gait == before.name else Gait.named(gait, legs=before.legs)
-    gait.require_legs(before.legs)
-    return gait
