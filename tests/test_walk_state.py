@@ -1,8 +1,30 @@
 """The states of walking: which follow each other, and what decides it."""
 
+from types import SimpleNamespace
+
+import numpy as np
 import pytest
 
-from tarsus.control.walk_state import WalkState, next_walk_state
+from sample_gait_states import moment_of, rest_of, setup_of
+from tarsus.control.tick.integrate import _finished as finished
+from tarsus.control.walk_state import TickState, WalkState
+
+
+def after(state, *, follows_twist, at_rest, changes_gait=False, searches=False):
+    """The state of a walk after a tick at whose end its feet are on the ground and nothing moves."""
+    transitions = SimpleNamespace(
+        footholds=SimpleNamespace(feet_landed=lambda *_: None),
+        finish=lambda gait, _: gait,
+        at_rest=lambda _: at_rest,
+        changes_gait=changes_gait,
+    )
+    ground = SimpleNamespace(support=SimpleNamespace(halts=searches))
+    walk, gait = (
+        SimpleNamespace(transitions=transitions, ground=ground),
+        moment_of(setup_of("strider"), rest_of("strider")),
+    )
+    tick = TickState(gait, np.array([0.1, 0.0, 0.0]) * follows_twist, state)
+    return finished(walk, tick, gait, 0.01).walk_state
 
 
 @pytest.mark.parametrize(
@@ -16,11 +38,12 @@ from tarsus.control.walk_state import WalkState, next_walk_state
 )
 def test_the_state_of_a_moving_robot(flags, expected):
     for state in set(WalkState) - {WalkState.STANDING}:
-        assert next_walk_state(state, **flags) is expected
+        assert after(state, **flags) is expected
 
 
 def test_a_robot_stops_before_it_stands():
     at_rest = {"follows_twist": False, "at_rest": True}
     for state in set(WalkState) - {WalkState.STANDING, WalkState.STOPPING}:
-        assert next_walk_state(state, **at_rest) is WalkState.STOPPING
-    assert next_walk_state(WalkState.STOPPING, **at_rest) is WalkState.STANDING
+        assert after(state, **at_rest) is WalkState.STOPPING
+    for state in (WalkState.STOPPING, WalkState.STANDING):
+        assert after(state, **at_rest) is WalkState.STANDING

@@ -6,7 +6,7 @@ from tarsus.control.tick.components import WalkComponents
 from tarsus.control.walk.state import GaitState, StepInputs
 from tarsus.control.walk.stepper import advance
 from tarsus.control.walk.vertical_motion import moved_vertically
-from tarsus.control.walk_state import TickState, next_walk_state
+from tarsus.control.walk_state import TickState, WalkState
 
 __all__ = ["integrated"]
 
@@ -45,11 +45,10 @@ def _step_inputs(walk: WalkComponents, tick: TickState, dt: float) -> StepInputs
     footholds, excluded = transitions.footholds, walk.foot_targets.legs
     sway = _NO_MOTION if standing or timing.gait.body_shift else parameters.sway
     pose.set_sway(sway, frequency=timing.frequency, beats=timing.gait.beats)
-    hold_feet, felt, offsets = transitions.changes_gait, None, state.admittance_offset.value
+    felt, offsets = None, state.admittance_offset.value
     if state.felt:
         footholds.shift(walk.ground.body.stance.shift)
         felt = walk.ground.inputs(tick, transitions, excluded, dt)
-        hold_feet = hold_feet or walk.ground.support.waits
         if walk.ground.offsets is not None:
             offsets = walk.ground.offsets * state.down
     walk.solver.rolling.step(footholds.rest, excluded, dt, down=state.down)
@@ -64,7 +63,7 @@ def _step_inputs(walk: WalkComponents, tick: TickState, dt: float) -> StepInputs
         placement_bounds=footholds.placement_bounds,
         placement_radii=footholds.placement_radii,
         admittance_offset=offsets,
-        hold_feet=hold_feet,
+        hold_feet=transitions.changes_gait or walk.ground.support.waits,
         excluded=parameters.excluded,
         unstepped=transitions.unstepped,
         shift=pose.shift,
@@ -76,15 +75,17 @@ def _finished(walk: WalkComponents, tick: TickState, state: GaitState, dt: float
     """Return the state, once steps, transitions and searches that end with the tick have ended."""
     walk.transitions.footholds.feet_landed(tick.gait.down, state.down)
     state = walk.transitions.finish(state, dt)
-    if tick.standing:
-        return tick._replace(gait=state)
-    follows_twist = any(tick.twist.tolist())
-    still = not (follows_twist or any(state.twist.value.tolist())) and bool(state.down.all())
-    following = next_walk_state(
-        tick.walk_state,
-        follows_twist=follows_twist,
-        at_rest=still and walk.transitions.at_rest(state),
-        changes_gait=walk.transitions.changes_gait,
-        searches=walk.ground.support.halts,
-    )
-    return tick._replace(gait=state, walk_state=following)
+    return tick._replace(gait=state, walk_state=tick.walk_state if tick.standing else _walk_state(walk, tick, state))
+
+
+def _walk_state(walk: WalkComponents, tick: TickState, state: GaitState) -> WalkState:
+    """Return what a robot does that has not stood in the tick."""
+    if walk.ground.support.halts:
+        return WalkState.SEARCHING
+    if walk.transitions.changes_gait:
+        return WalkState.CHANGING_GAIT
+    if any(tick.twist.tolist()):
+        return WalkState.WALKING
+    at_rest = not any(state.twist.value.tolist()) and bool(state.down.all()) and walk.transitions.at_rest(state)
+    # A walk that has just ended stops first, even if its feet are at rest already.
+    return WalkState.STANDING if at_rest and tick.walk_state is WalkState.STOPPING else WalkState.STOPPING
