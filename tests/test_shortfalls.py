@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 
 from tarsus.control.limitation import Cause, LimitationKind
-from tarsus.control.transition.shortfalls import rejection_limitations, stance_limitations
 from tarsus.control.transition.stance_transition import WalkParameters
 from tarsus.gait.gait import Gait
 
@@ -24,7 +23,7 @@ MET = np.array([0.02, 0.0, 0.124, 0.05, 0.1, 0.0, 0.03])
 
 
 def limitations(posture, stance_width=0.01, asked=ASKED):
-    found = stance_limitations(asked, np.array(posture), CAUSE, stance_width=stance_width)
+    found = asked.shortfalls(np.array(posture), CAUSE, stance_width=stance_width)
     assert all((each.cause, each.leg) == (CAUSE.reason, CAUSE.leg) for each in found)
     return {each.kind: (each.asked, each.granted) for each in found}
 
@@ -53,7 +52,7 @@ def test_a_height_missing_from_a_commanded_body_pose_is_the_poses():
 
 
 def test_a_missing_correction_is_one_of_the_body_pose():
-    (found,) = stance_limitations(ASKED, changed(3, -0.05), CAUSE, stance_width=0.01)
+    (found,) = ASKED.shortfalls(changed(3, -0.05), CAUSE, stance_width=0.01)
     assert found.kind is LimitationKind.BODY
     assert found.cause == "the shift over the feet that bear load is not met: the reason"
 
@@ -61,7 +60,7 @@ def test_a_missing_correction_is_one_of_the_body_pose():
 def test_each_rejected_parameter_has_a_limitation():
     def kinds(posture=MET, **changes):
         asked = dataclasses.replace(ASKED, **changes)
-        return {each.kind: each.asked for each in rejection_limitations(asked, ASKED, posture, CAUSE)}
+        return {each.kind: each.asked for each in asked.rejected(ASKED, posture, CAUSE)}
 
     gaits = kinds(None, gait=Gait.named("wave"), excluded=(0,), cycle_time=0.7)
     assert gaits == {LimitationKind.GAIT: pytest.approx(np.nan, nan_ok=True), "foot_target": 1.0, "cycle_time": 0.7}

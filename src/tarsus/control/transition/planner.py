@@ -16,8 +16,13 @@ from tarsus.control.transition.feasible_fraction import (
     reach_cause,
     reachable_fraction,
 )
-from tarsus.control.transition.shortfalls import UNREACHABLE, stance_limitations
-from tarsus.control.transition.stance_transition import StanceTarget, StanceTransition, WalkParameters, target_stance
+from tarsus.control.transition.stance_transition import (
+    UNREACHABLE,
+    StanceTarget,
+    StanceTransition,
+    WalkParameters,
+    target_stance,
+)
 from tarsus.control.workspace.cycle_time import CycleTiming, cycle_timing
 from tarsus.control.workspace.stance_limits import shifted_limits, velocity_limits
 from tarsus.errors import UnreachableError
@@ -140,7 +145,7 @@ class TransitionPlanner:
             goal = present.towards(end, fraction)
             limits = yield from self._limits(parameters, goal)
         reached = present.towards(end, reachable)
-        shortfalls = () if end is present else self._shortfalls(parameters, end, reached, cause or UNREACHABLE)
+        shortfalls = [] if end is present else self._shortfalls(parameters, end, reached, cause or UNREACHABLE)
         return replace(
             found,
             complete=fraction == reachable and bool((found.rest == goal.rest).all()),
@@ -220,12 +225,12 @@ class TransitionPlanner:
 
     def _shortfalls(
         self, parameters: WalkParameters, end: StanceTarget, reached: StanceTarget, cause: Cause
-    ) -> tuple[Limitation, ...]:
+    ) -> list[Limitation]:
         """Return what of the commanded stance, at the end, is not feasible."""
         mount = self.robot.geometry.mount_x + 1j * self.robot.geometry.mount_y
         missing = float((np.abs(end.rest - mount) - np.abs(reached.rest - mount)).mean())
         width = parameters.stance_width - missing
-        return stance_limitations(parameters, reached.posture, cause, stance_width=width)
+        return parameters.shortfalls(reached.posture, cause, stance_width=width)
 
 
 def _timing_limitations(parameters: WalkParameters, timing: CycleTiming) -> tuple[Limitation, ...]:

@@ -11,8 +11,7 @@ from typing import TypeAlias
 from tarsus.control.command import Command
 from tarsus.control.incremental import Incremental
 from tarsus.control.limitation import Cause, Limitation, LimitationKind
-from tarsus.control.transition.shortfalls import UNREACHABLE, rejection_limitations
-from tarsus.control.transition.stance_transition import StanceTransition, WalkParameters
+from tarsus.control.transition.stance_transition import UNREACHABLE, StanceTransition, WalkParameters
 from tarsus.errors import UnreachableError
 from tarsus.gait.gait import Gait
 
@@ -128,7 +127,7 @@ class TransitionScheduler:
         # What is no longer commanded by now is not rejected.
         elif asked == self._next_parameters()[0]:
             posture = None if stay else self.current.posture
-            self._rejections[asked] = rejection_limitations(asked, self.current.parameters, posture, found)
+            self._rejections[asked] = asked.rejected(self.current.parameters, posture, found)
             self._shortfalls = tuple(chain.from_iterable(self._rejections.values()))
 
     def adopt(self, transition: StanceTransition) -> None:
@@ -153,7 +152,7 @@ class TransitionScheduler:
         # Standing otherwise has to wait until all legs are back in the gait.
         deferred = dataclasses.replace(self.requested.stepping_like(current), correction=current.correction)
         if current.excluded and self._is_open(deferred, False):
-            self._shortfalls += rejection_limitations(deferred, current, self.current.posture, _DEFERRED)
+            self._shortfalls += deferred.rejected(current, self.current.posture, _DEFERRED)
 
     def _next_parameters(self) -> tuple[WalkParameters, bool]:
         """Return what to change first, how the robot steps or how it stands; and whether its posture stays."""

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from tarsus.control.limitation import Limitation
+from tarsus.control.limitation import Cause, Limitation, LimitationKind
 from tarsus.control.walk.step_timing import StepTiming
 from tarsus.control.workspace.cycle_time import CycleTiming
 from tarsus.errors import UnreachableError
@@ -21,10 +21,14 @@ from tarsus.robot.robot import Robot
 if TYPE_CHECKING:
     from jaxtyping import Complex, Float
 
-__all__ = ["StanceTarget", "StanceTransition", "WalkParameters", "target_stance"]
+__all__ = ["UNREACHABLE", "StanceTarget", "StanceTransition", "WalkParameters", "target_stance"]
+
+UNREACHABLE = Cause("no leg reaches the ground at this height")
 
 # Fractions of a change of height that are tried where the whole of it has no foothold.
 _FRACTIONS = np.arange(7, 0, -1) / 8
+# Differences below this are rounding [m, rad].
+_TOLERANCE = 1e-6
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -65,6 +69,74 @@ class WalkParameters:
     def corrected_body(self) -> tuple[float, ...]:
         """The body pose with its correction."""
         return tuple(a + b for a, b in zip(self.body, self.correction, strict=True))
+
+    def shortfalls(self, posture: Float[np.ndarray, "7"], cause: Cause, *, stance_width: float) -> list[Limitation]:
+        """Return a limitation for each parameter that a posture does not meet.
+
+        Parameters
+        ----------
+        posture, cause : array, shape (7,), and Cause
+            The posture, with the correction of the parameters; why these are not met.
+        stance_width : float
+            The stance width that is met; of interest only where everything else is met [m].
+        """
+        gap = np.array([*self.corrected_body, self.swing_height]) - posture
+        gap[2] += self.body_height
+        found = []
+        # The height of the body's origin is commanded twice: a gap that the body pose alone can't make is the height's.
+        if _TOLERANCE + abs(self.body[2]) < abs(gap[2]):
+            asked = self.body_height
+            found.append(cause.limitation(LimitationKind.BODY_HEIGHT, asked=asked, granted=asked - float(gap[2])))
+            gap[2] = 0.0
+        if abs(gap[SWING_HEIGHT]) > _TOLERANCE:
+            asked = self.swing_height
+            found.append(cause.limitation(LimitationKind.SWING_HEIGHT, asked=asked, granted=asked - float(gap[-1])))
+        found += self._body_shortfalls(gap[:SWING_HEIGHT], cause)
+        width = self.stance_width
+        if not found and abs(width - stance_width) > _TOLERANCE:
+            found.append(cause.limitation(LimitationKind.STANCE_WIDTH, asked=width, granted=stance_width))
+        return found
+
+    def _body_shortfalls(self, gap: Float[np.ndarray, "6"], cause: Cause) -> list[Limitation]:
+        """Return what of the body pose is missing; where only its correction is, that."""
+        missing = [axis for axis in range(SWING_HEIGHT) if abs(gap[axis]) > _TOLERANCE]
+        commanded = [axis for axis in missing if self.body[axis]]
+        if commanded:
+            fraction = min(1 - abs(float(gap[axis]) / self.body[axis]) for axis in commanded)
+            return [cause.limitation(LimitationKind.BODY, asked=1.0, granted=max(fraction, 0.0))]
+        if missing:
+            reason = f"the shift over the feet that bear load is not met: {cause.reason}"
+            return [cause._replace(reason=reason).limitation(LimitationKind.BODY)]
+        return []
+
+    def rejected(
+        self, current: WalkParameters, posture: Float[np.ndarray, "7"] | None, cause: Cause
+    ) -> tuple[Limitation, ...]:
+        """Return the limitations of parameters that are rejected as a whole.
+
+        Parameters
+        ----------
+        current : WalkParameters
+            What is in force.
+        posture : array, shape (7,), or None
+            The posture that is in force; None where it would have stayed.
+        cause : Cause
+            Why they are rejected.
+        """
+        found: list[Limitation] = []
+        if self.gait != current.gait:
+            found.append(cause.limitation(LimitationKind.GAIT))
+        if self.excluded != current.excluded:
+            found.append(cause.limitation(LimitationKind.FOOT_TARGET, asked=1.0, granted=0.0))
+        if self.cycle_time != current.cycle_time and self.cycle_time is not None:
+            found.append(cause.limitation(LimitationKind.CYCLE_TIME, asked=self.cycle_time))
+        if posture is None:
+            return tuple(found)
+        if self.sway != current.sway:
+            found.append(cause.limitation(LimitationKind.SWAY, asked=1.0, granted=0.0))
+        corrected = posture.copy()
+        corrected[:SWING_HEIGHT] += np.subtract(self.correction, current.correction)
+        return (*found, *self.shortfalls(corrected, cause, stance_width=current.stance_width))
 
     def stepping_like(self, others: WalkParameters) -> WalkParameters:
         """Return how to stand like this, and step like others: their gait, cycle time, and legs out of the gait."""
