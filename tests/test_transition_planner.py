@@ -16,7 +16,6 @@ from tarsus.control.limitation import Cause, Limitation, LimitationKind
 from tarsus.control.transition.feasible_fraction import TIPPING
 from tarsus.control.transition.planner import TransitionPlanner
 from tarsus.control.transition.stance_transition import StanceTarget, StanceTransition, WalkParameters, target_stance
-from tarsus.errors import UnreachableError
 from tarsus.gait.gait import Gait
 from tarsus.gait.stance.stance_geometry import SWING_HEIGHT, rotation_rows, stance_geometry_of
 from tarsus.kinematics.inverse import inverse_kinematics
@@ -143,8 +142,8 @@ def test_an_unreachable_height_is_approached_as_far_as_the_legs_reach():
     assert isinstance(found, StanceTransition)
     assert setup.body_height < found.posture[2] < 0.5
     assert reached(setup, found.posture, found.rest)
-    with pytest.raises(UnreachableError, match="no leg reaches the ground at body height 500000"):
-        planned(setup, parameters_of(setup, body_height=500.0), first.posture, first.rest)
+    nowhere = planned(setup, parameters_of(setup, body_height=500.0), first.posture, first.rest)
+    assert nowhere == Cause("no leg reaches the ground at this height")
 
 
 def test_a_short_cycle_is_made_longer_and_that_is_said():
@@ -240,12 +239,10 @@ def test_a_correction_for_the_ground_is_added_to_the_body():
 @given(st.tuples(*[st.floats(-0.1, 0.1)] * 3, *[st.floats(-0.5, 0.5)] * 3), st.floats(0.02, 0.3), st.floats(0, 0.1))
 def test_whatever_is_commanded_the_result_is_reached(body, body_height, swing_height):
     setup = setup_of("phantomx")
-    try:
-        found = from_start("phantomx", body=body, body_height=body_height, swing_height=swing_height)
-    except UnreachableError:
-        return
+    found = from_start("phantomx", body=body, body_height=body_height, swing_height=swing_height)
     if isinstance(found, Cause):
-        assert found.leg in setup.robot.leg_names or found == TIPPING or found.reason.startswith(TIPPING.reason)
+        unreachable = found.reason.startswith("no leg reaches the ground")
+        assert found.leg in setup.robot.leg_names or found.reason.startswith(TIPPING.reason) or unreachable
         return
     assert reached(setup, found.posture, found.rest)
     assert reached(setup, start("phantomx").posture, found.rest)

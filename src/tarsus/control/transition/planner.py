@@ -16,13 +16,7 @@ from tarsus.control.transition.feasible_fraction import (
     reach_cause,
     reachable_fraction,
 )
-from tarsus.control.transition.stance_transition import (
-    UNREACHABLE,
-    StanceTarget,
-    StanceTransition,
-    WalkParameters,
-    target_stance,
-)
+from tarsus.control.transition.stance_transition import StanceTarget, StanceTransition, WalkParameters, target_stance
 from tarsus.control.workspace.cycle_time import CycleTiming, cycle_timing
 from tarsus.control.workspace.stance_limits import shifted_limits, velocity_limits
 from tarsus.errors import UnreachableError
@@ -35,6 +29,7 @@ from tarsus.robot.robot import Robot
 
 __all__ = ["TransitionPlanner"]
 
+_UNREACHABLE = Cause("no leg reaches the ground at this height")
 _LEAST_FRACTION = 0.02
 # The least move of the body that is made for its own [m, rad]: every one brings the commanded posture closer.
 _LEAST_MOVE = 1e-3
@@ -108,14 +103,11 @@ class TransitionPlanner:
         -------
         StanceTransition or Cause
             The transition; or why nothing of it is feasible.
-
-        Raises
-        ------
-        UnreachableError
-            If no leg reaches the ground at the body height.
         """
         robot = self.robot
         end = present if stay else target_stance(robot, parameters, present)
+        if end is None:
+            return _UNREACHABLE
         yield
         reachable, cause = 1.0, None
         if present is not end:
@@ -145,7 +137,7 @@ class TransitionPlanner:
             goal = present.towards(end, fraction)
             limits = yield from self._limits(parameters, goal)
         reached = present.towards(end, reachable)
-        shortfalls = [] if end is present else self._shortfalls(parameters, end, reached, cause or UNREACHABLE)
+        shortfalls = [] if end is present else self._shortfalls(parameters, end, reached, cause or _UNREACHABLE)
         return replace(
             found,
             complete=fraction == reachable and bool((found.rest == goal.rest).all()),

@@ -4,15 +4,13 @@ from __future__ import annotations
 
 import dataclasses
 from collections.abc import Callable
-from contextlib import suppress
 from itertools import chain
 from typing import TypeAlias
 
 from tarsus.control.command import Command
 from tarsus.control.incremental import Incremental
 from tarsus.control.limitation import Cause, Limitation, LimitationKind
-from tarsus.control.transition.stance_transition import UNREACHABLE, StanceTransition, WalkParameters
-from tarsus.errors import UnreachableError
+from tarsus.control.transition.stance_transition import StanceTransition, WalkParameters
 from tarsus.gait.gait import Gait
 
 __all__ = ["PlanTransition", "TransitionScheduler"]
@@ -119,9 +117,7 @@ class TransitionScheduler:
 
     def _planning(self, plan: PlanTransition, asked: WalkParameters, stay: bool) -> Incremental[None]:
         """Plan the transition to parameters, and take note of it or of why these are rejected."""
-        found: StanceTransition | Cause = UNREACHABLE
-        with suppress(UnreachableError):
-            found = yield from plan(asked, stay)
+        found = yield from plan(asked, stay)
         if isinstance(found, StanceTransition):
             self.planned = found
         # What is no longer commanded by now is not rejected.

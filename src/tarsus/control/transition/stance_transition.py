@@ -11,7 +11,6 @@ import numpy as np
 from tarsus.control.limitation import Cause, Limitation, LimitationKind
 from tarsus.control.walk.step_timing import StepTiming
 from tarsus.control.workspace.cycle_time import CycleTiming
-from tarsus.errors import UnreachableError
 from tarsus.gait.gait import Gait
 from tarsus.gait.stance.stance_geometry import SWING_HEIGHT, StanceGeometry, stance_geometry_of
 from tarsus.gait.stance.velocity_limits import VelocityLimits, stance_overhang
@@ -21,9 +20,7 @@ from tarsus.robot.robot import Robot
 if TYPE_CHECKING:
     from jaxtyping import Complex, Float
 
-__all__ = ["UNREACHABLE", "StanceTarget", "StanceTransition", "WalkParameters", "target_stance"]
-
-UNREACHABLE = Cause("no leg reaches the ground at this height")
+__all__ = ["StanceTarget", "StanceTransition", "WalkParameters", "target_stance"]
 
 # Fractions of a change of height that are tried where the whole of it has no foothold.
 _FRACTIONS = np.arange(7, 0, -1) / 8
@@ -184,18 +181,15 @@ class StanceTarget(NamedTuple):
         return stance_geometry_of(self.posture, self.rest)
 
 
-def target_stance(robot: Robot, parameters: WalkParameters, present: StanceTarget) -> StanceTarget:
+def target_stance(robot: Robot, parameters: WalkParameters, present: StanceTarget) -> StanceTarget | None:
     """Return posture and rest footholds; for a height without a foothold, of the nearest height that has them.
+
+    None where no height between the present and the commanded one has footholds.
 
     Parameters
     ----------
     robot, parameters, present : Robot, WalkParameters, StanceTarget
         A single robot; what is commanded; the present stance.
-
-    Raises
-    ------
-    UnreachableError
-        If no height between the present and the commanded one has footholds.
     """
     body_height = float(present.posture[2]) - parameters.corrected_body[2]
     swing_height = float(present.posture[SWING_HEIGHT])
@@ -209,7 +203,7 @@ def target_stance(robot: Robot, parameters: WalkParameters, present: StanceTarge
             body_height, swing_height = float(body_heights[first]), float(swing_heights[first])
             nearest = replace(parameters, body_height=body_height, swing_height=swing_height)
             return StanceTarget.of(robot, nearest, feet[first])
-    raise UnreachableError(f"no leg reaches the ground at body height {parameters.body_height * 1000:.1f} mm")
+    return None
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
