@@ -10,7 +10,7 @@ import numpy as np
 from tarsus.control.incremental import Incremental
 from tarsus.control.limitation import Cause
 from tarsus.control.transition.stance_transition import StanceTarget
-from tarsus.control.workspace.foot_workspace import rest_margin
+from tarsus.control.workspace.foot_workspace import reach_cause, rest_margin
 from tarsus.gait.stance.stability import StabilityCheck
 from tarsus.gait.stance.stance_geometry import SWING_HEIGHT, StanceGeometry, joint_margin, rotation_rows
 from tarsus.robot.robot import Robot
@@ -18,9 +18,8 @@ from tarsus.robot.robot import Robot
 if TYPE_CHECKING:
     from jaxtyping import Float
 
-__all__ = ["TIPPING", "balanced_fraction", "first_increment", "reach_cause", "reachable_fraction"]
+__all__ = ["balanced_fraction", "first_increment", "reachable_fraction"]
 
-TIPPING = Cause("the robot would tip over")
 # The whole path is sampled at so many points; the interval that fails is then halved: to 1/2048 of the path.
 _SAMPLES, _HALVINGS = 16, 7
 # How many stances are examined in one tick.
@@ -137,11 +136,3 @@ def _reach_margin(robot: Robot, stances: list[StanceTarget]) -> Float[np.ndarray
     return np.asarray(
         joint_margin(robot.geometry, stand.solve(robot.geometry, rest.real, rest.imag, height)).min(axis=0)
     )
-
-
-def reach_cause(robot: Robot, stand: StanceGeometry) -> Cause:
-    """Return which leg has no room about its rest foothold, and why."""
-    margin = rest_margin(robot, stand)
-    leg = int(margin.argmin())
-    knee = bool(rest_margin(robot, stand, knees=False)[leg] >= 0)
-    return Cause("the knee touches the ground" if knee else "end of the leg's reach", robot.leg_names[leg])

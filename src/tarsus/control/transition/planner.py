@@ -9,15 +9,10 @@ import numpy as np
 from tarsus.arrays import require_finite_float
 from tarsus.control.incremental import Incremental, complete
 from tarsus.control.limitation import Cause, Limitation, LimitationKind
-from tarsus.control.transition.feasible_fraction import (
-    TIPPING,
-    balanced_fraction,
-    first_increment,
-    reach_cause,
-    reachable_fraction,
-)
+from tarsus.control.transition.feasible_fraction import balanced_fraction, first_increment, reachable_fraction
 from tarsus.control.transition.stance_transition import StanceTarget, StanceTransition, WalkParameters, target_stance
 from tarsus.control.workspace.cycle_time import CycleTiming, cycle_timing
+from tarsus.control.workspace.foot_workspace import reach_cause
 from tarsus.control.workspace.stance_limits import shifted_limits, velocity_limits
 from tarsus.errors import UnreachableError
 from tarsus.gait.stance.stability import StabilityCheck, support_sets
@@ -29,6 +24,7 @@ from tarsus.robot.robot import Robot
 
 __all__ = ["TransitionPlanner"]
 
+_TIPPING = Cause("the robot would tip over")
 _UNREACHABLE = Cause("no leg reaches the ground at this height")
 _LEAST_FRACTION = 0.02
 # The least move of the body that is made for its own [m, rad]: every one brings the commanded posture closer.
@@ -125,8 +121,8 @@ class TransitionPlanner:
             check = StabilityCheck(robot, sets, parameters.excluded)
             reachable = fraction = yield from balanced_fraction(check, present, end, fraction)
             if fraction == 0:
-                return TIPPING
-            cause, goal = TIPPING, present.towards(end, fraction)
+                return _TIPPING
+            cause, goal = _TIPPING, present.towards(end, fraction)
             limits = yield from self._limits(parameters, goal)
         first: Cause | None = None
         while isinstance(found := (yield from self._increment(parameters, present, goal, limits)), Cause):
@@ -184,7 +180,7 @@ class TransitionPlanner:
                 final_limits=final,
             )
         if not on_path.balanced:
-            return TIPPING._replace(reason=f"{TIPPING.reason} on the way")
+            return _TIPPING._replace(reason=f"{_TIPPING.reason} on the way")
         return Cause("could not stand and step on the way", self.robot.leg_names[on_path.limiting_leg])
 
     def _limits(self, parameters: WalkParameters, stance: StanceTarget) -> Incremental[VelocityLimits]:
@@ -210,7 +206,7 @@ class TransitionPlanner:
     def _cause(self, parameters: WalkParameters, stance: StanceTarget, limits: VelocityLimits) -> Cause:
         """Return why the robot can't stand and step in a stance."""
         if not limits.balanced:
-            return TIPPING
+            return _TIPPING
         if any(parameters.sway):
             return Cause("end of the leg's reach as the body sways", self.robot.leg_names[limits.limiting_leg])
         return reach_cause(self.robot, stance.stand)

@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from tarsus.control.incremental import Incremental
+from tarsus.control.limitation import Cause
 from tarsus.gait.foot_polygons import NORMALS, NORMALS_CONJUGATE, polygon_ends
 from tarsus.gait.stance.leg_margin import RESERVED_MARGIN, LegMargin
 from tarsus.gait.stance.stance_geometry import StanceGeometry
@@ -24,7 +25,7 @@ from tarsus.robot.robot import Robot
 if TYPE_CHECKING:
     from jaxtyping import Complex, Float
 
-__all__ = ["foot_workspace", "rest_margin"]
+__all__ = ["foot_workspace", "reach_cause", "rest_margin"]
 
 _RAYS, _SIDES, _RINGS, _INNER, _FINE = 24, len(NORMALS), 8, 5, 5
 _DIRECTIONS = np.exp(2j * np.pi * np.arange(_RAYS) / _RAYS)[:, None]
@@ -105,6 +106,20 @@ def rest_margin(robot: Robot, stance: StanceGeometry, *, knees: bool = True) -> 
     margin = LegMargin(robot, stance, knees=knees)(out)
     ends = np.stack([np.broadcast_to(margin[0], margin[1:].shape), margin[1:]])
     return np.asarray(_first_zero(rays, ends, interpolation=1.0).min(axis=0)) - RESERVED_MARGIN
+
+
+def reach_cause(robot: Robot, stance: StanceGeometry) -> Cause:
+    """Return which leg has no room about its rest foothold, and why.
+
+    Parameters
+    ----------
+    robot, stance : Robot, StanceGeometry
+        A single robot; the body and the rest footholds.
+    """
+    margin = rest_margin(robot, stance)
+    leg = int(margin.argmin())
+    knee = bool(rest_margin(robot, stance, knees=False)[leg] >= 0)
+    return Cause("the knee touches the ground" if knee else "end of the leg's reach", robot.leg_names[leg])
 
 
 def _ring(robot: Robot) -> float:
