@@ -132,7 +132,6 @@ class AdmittanceFilter:
     def __init__(self, admittance: Admittance, legs: int) -> None:
         self.admittance = admittance
         self.offsets = self.speeds = np.zeros(legs)
-        self._tick = (0.0, admittance.transition(0.0))
 
     def step(self, force_errors: Sequence[float | None], dt: float) -> Float[np.ndarray, "legs"]:
         """Return the offsets after a tick with constant force errors.
@@ -144,9 +143,7 @@ class AdmittanceFilter:
         dt : float
             Length of the tick, finite and at least 0 [s].
         """
-        if dt != self._tick[0]:
-            self._tick = dt, self.admittance.transition(dt)
-        (xx, xv, vx, vv), most = self._tick[1], self.admittance.max_force
+        (xx, xv, vx, vv), most = self.admittance.transition(dt), self.admittance.max_force
         forces = np.array(force_errors, dtype=float).reshape(self.offsets.shape)
         target = np.where(np.isnan(forces), 0.0, forces.clip(-most, most)) / self.admittance.stiffness
         distance, speeds = self.offsets - target, self.speeds
