@@ -145,8 +145,12 @@ class TransitionPlanner:
         self, parameters: WalkParameters, start: StanceTarget, goal: StanceTarget, limits: VelocityLimits
     ) -> Incremental[StanceTransition | Cause]:
         """Find a way to a stance, with its limits there; or else one on which only the body moves."""
+        if not limits.balanced:
+            return _TIPPING
+        if not limits.feasible and any(parameters.sway):
+            return Cause("end of the leg's reach as the body sways", self.robot.leg_names[limits.limiting_leg])
         if not limits.feasible:
-            return self._cause(parameters, goal, limits)
+            return reach_cause(self.robot, goal.stand)
         found = yield from self._way(parameters, start, goal, limits)
         moves = np.abs(goal.posture - start.posture).max() > _LEAST_MOVE
         if isinstance(found, Cause) and moves and np.abs(goal.rest - start.rest).max() > _SAME:
@@ -202,14 +206,6 @@ class TransitionPlanner:
         stepping = yield from self._limits(parameters, begin)
         stepping = with_stroke_limits(stepping, final.stroke, final.turning, duty_factor=parameters.gait.duty_factor)
         return stepping, on_path.intersection(stepping)
-
-    def _cause(self, parameters: WalkParameters, stance: StanceTarget, limits: VelocityLimits) -> Cause:
-        """Return why the robot can't stand and step in a stance."""
-        if not limits.balanced:
-            return _TIPPING
-        if any(parameters.sway):
-            return Cause("end of the leg's reach as the body sways", self.robot.leg_names[limits.limiting_leg])
-        return reach_cause(self.robot, stance.stand)
 
     def _shortfalls(
         self, parameters: WalkParameters, end: StanceTarget, reached: StanceTarget, cause: Cause
