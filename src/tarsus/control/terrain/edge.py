@@ -63,10 +63,6 @@ class Edge:
         self.way, self.left = self.way * turn, self.left * turn
         return turn
 
-    def forget(self) -> None:
-        """Forget the edges: the robot is carried elsewhere."""
-        self.way = self.left = 0j
-
     def leave(self, obstacle: complex) -> None:
         """Remember the edge as the one that the robot leaves, unless it is the direction of an obstacle."""
         self.left = 0j if self.way == obstacle else self.way

@@ -100,7 +100,7 @@ class MissingGround:
     def forget(self) -> None:
         """Forget holes and obstacles: the robot is carried elsewhere."""
         self.obstacles, self._tries, self.places = Obstacles(self._scale), [0] * len(self._names), {}
-        self._edge.forget()
+        self._edge.way = self._edge.left = 0j
         self.refuses, self._again = False, 0
 
     def turn_to(self, yaw: float) -> None:
