@@ -44,7 +44,7 @@ class TransitionScheduler:
         self.requested = initial.parameters
         self.planned: StanceTransition | None = None
         # Parameters that are not feasible at all, and what that limits.
-        self._rejections: dict[WalkParameters, tuple[Limitation, ...]] = {}
+        self._rejections: dict[WalkParameters, list[Limitation]] = {}
         self._job: Incremental[None] | None = None
         # Parameters for which nothing is left to plan.
         self._done: WalkParameters | None = None
@@ -148,7 +148,7 @@ class TransitionScheduler:
         # Standing otherwise has to wait until all legs are back in the gait.
         deferred = dataclasses.replace(self.requested.stepping_like(current), correction=current.correction)
         if current.excluded and self._is_open(deferred, False):
-            self._shortfalls += deferred.rejected(current, self.current.posture, _DEFERRED)
+            self._shortfalls += tuple(deferred.rejected(current, self.current.posture, _DEFERRED))
 
     def _next_parameters(self) -> tuple[WalkParameters, bool]:
         """Return what to change first, how the robot steps or how it stands; and whether its posture stays."""

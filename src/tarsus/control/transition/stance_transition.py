@@ -106,14 +106,12 @@ class WalkParameters:
             return [cause._replace(reason=reason).limitation(LimitationKind.BODY)]
         return []
 
-    def rejected(
-        self, current: WalkParameters, posture: Float[np.ndarray, "7"] | None, cause: Cause
-    ) -> tuple[Limitation, ...]:
+    def rejected(self, now: WalkParameters, posture: Float[np.ndarray, "7"] | None, cause: Cause) -> list[Limitation]:
         """Return the limitations of parameters that are rejected as a whole.
 
         Parameters
         ----------
-        current : WalkParameters
+        now : WalkParameters
             What is in force.
         posture : array, shape (7,), or None
             The posture that is in force; None where it would have stayed.
@@ -121,19 +119,19 @@ class WalkParameters:
             Why they are rejected.
         """
         found: list[Limitation] = []
-        if self.gait != current.gait:
+        if self.gait != now.gait:
             found.append(cause.limitation(LimitationKind.GAIT))
-        if self.excluded != current.excluded:
+        if self.excluded != now.excluded:
             found.append(cause.limitation(LimitationKind.FOOT_TARGET, asked=1.0, granted=0.0))
-        if self.cycle_time != current.cycle_time and self.cycle_time is not None:
+        if self.cycle_time != now.cycle_time and self.cycle_time is not None:
             found.append(cause.limitation(LimitationKind.CYCLE_TIME, asked=self.cycle_time))
         if posture is None:
-            return tuple(found)
-        if self.sway != current.sway:
+            return found
+        if self.sway != now.sway:
             found.append(cause.limitation(LimitationKind.SWAY, asked=1.0, granted=0.0))
         corrected = posture.copy()
-        corrected[:SWING_HEIGHT] += np.subtract(self.correction, current.correction)
-        return (*found, *self.shortfalls(corrected, cause, stance_width=current.stance_width))
+        corrected[:SWING_HEIGHT] += np.subtract(self.correction, now.correction)
+        return found + self.shortfalls(corrected, cause, stance_width=now.stance_width)
 
     def stepping_like(self, others: WalkParameters) -> WalkParameters:
         """Return how to stand like this, and step like others: their gait, cycle time, and legs out of the gait."""
