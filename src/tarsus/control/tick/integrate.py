@@ -34,7 +34,9 @@ def integrated(walk: WalkComponents, tick: TickState, dt: float) -> TickState:
     else:
         after = scaling.follow(integrate, walk.solver.angles, dt, exact=bool(walk.ground.ground.crossing))
     targets.step(dt * scaling.rate, after.down)
-    return _finished(walk, tick, after, dt)
+    walk.transitions.footholds.feet_landed(tick.gait.down, after.down)
+    after = walk.transitions.finish(after, dt)
+    return tick._replace(gait=after, walk_state=tick.walk_state if tick.standing else _walk_state(walk, tick, after))
 
 
 def _step_inputs(walk: WalkComponents, tick: TickState, dt: float) -> StepInputs:
@@ -71,15 +73,8 @@ def _step_inputs(walk: WalkComponents, tick: TickState, dt: float) -> StepInputs
     )
 
 
-def _finished(walk: WalkComponents, tick: TickState, state: GaitState, dt: float) -> TickState:
-    """Return the state, once steps, transitions and searches that end with the tick have ended."""
-    walk.transitions.footholds.feet_landed(tick.gait.down, state.down)
-    state = walk.transitions.finish(state, dt)
-    return tick._replace(gait=state, walk_state=tick.walk_state if tick.standing else _walk_state(walk, tick, state))
-
-
 def _walk_state(walk: WalkComponents, tick: TickState, state: GaitState) -> WalkState:
-    """Return what a robot does that has not stood in the tick."""
+    """Return what a robot does after a tick in which it has not stood."""
     if walk.ground.support.halts:
         return WalkState.SEARCHING
     if walk.transitions.changes_gait:
