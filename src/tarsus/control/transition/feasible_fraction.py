@@ -133,6 +133,5 @@ def _reach_margin(robot: Robot, stances: list[StanceTarget]) -> Float[np.ndarray
     swing_height = rows[:, SWING_HEIGHT:]
     stand = StanceGeometry(rest, rotation[:, None], rows[:, :3].T[..., None], 0.0)
     height = np.stack([0 * swing_height, swing_height])
-    return np.asarray(
-        joint_margin(robot.geometry, stand.solve(robot.geometry, rest.real, rest.imag, height)).min(axis=0)
-    )
+    margin = joint_margin(robot.geometry, stand.solve(robot.geometry, rest.real, rest.imag, height))
+    return np.asarray(margin.min(axis=0))

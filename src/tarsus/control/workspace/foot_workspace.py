@@ -138,9 +138,8 @@ def _first_zero(
     fraction = np.where(after < 0, before / np.where(before > after, before - after, 1.0), 1.0)
     radii = np.broadcast_to(radii, margin.shape)
     start, end = (np.take_along_axis(radii, index, axis=0)[0] for index in (last, first))
-    return np.asarray(
-        np.where(before < 0, -RESERVED_MARGIN, start + (end - start) * interpolation * np.clip(fraction, 0, 1))
-    )
+    zero = start + (end - start) * interpolation * np.clip(fraction, 0, 1)
+    return np.asarray(np.where(before < 0, -RESERVED_MARGIN, zero))
 
 
 def _spacing(
