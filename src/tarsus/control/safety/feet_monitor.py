@@ -66,12 +66,12 @@ class FeetMonitor:
         up = up or plane_normal(stance_feet)
         found, references = self._drag_violations(legs, feet, angles)
         self._checked = stance, up, references
-        x, y, heights = project(stance_feet, com, up)
-        margin = polygon_margin(x, y)
+        places, heights = project(stance_feet, com, up)
+        margin = polygon_margin(places)
         if not margin >= self._margin:
             found.append(Intervention(InterventionKind.STABILITY_MARGIN, "", "", margin, self._margin))
         if len(legs) > 1:
-            found += self._height_violations(legs, x, y, heights)
+            found += self._height_violations(legs, places, heights)
         return found
 
     def accept(self) -> None:
@@ -101,16 +101,11 @@ class FeetMonitor:
                 found.append(Intervention(InterventionKind.FOOT_DRAG, self._codes[j], "", drag, bound))
         return found, references
 
-    def _height_violations(
-        self, legs: list[int], x: list[float], y: list[float], heights: list[float]
-    ) -> list[Intervention]:
+    def _height_violations(self, legs: list[int], places: list[complex], heights: list[float]) -> list[Intervention]:
         """Return the stance feet too far above or below the mean height of all stance feet."""
-        count = len(heights)
-        mean_x, mean_y, mean = sum(x) / count, sum(y) / count, sum(heights) / count
-        found = []
-        for leg, foot_x, foot_y, height in zip(legs, x, y, heights, strict=True):
-            offset = abs(height - mean)
-            bound = self._height + self._slope * math.hypot(foot_x - mean_x, foot_y - mean_y)
+        middle, mean, found = sum(places) / len(places), sum(heights) / len(heights), []
+        for leg, place, height in zip(legs, places, heights, strict=True):
+            offset, bound = abs(height - mean), self._height + self._slope * abs(place - middle)
             if offset > bound:
                 found.append(Intervention(InterventionKind.FOOT_HEIGHT, self._codes[leg], "", offset, bound))
         return found

@@ -89,8 +89,8 @@ def _constants(robot: Robot, masses: Float[np.ndarray, "legs 3"]) -> list[tuple[
     return list(zip(*(column.tolist() for column in columns), strict=True))
 
 
-def project(points: list[Point], origin: Point, up: Point) -> tuple[list[float], list[float], list[float]]:
-    """Return the two horizontal coordinates and the heights of points relative to an origin [m].
+def project(points: list[Point], origin: Point, up: Point) -> tuple[list[complex], list[float]]:
+    """Return where points are horizontally, as complex numbers, and their heights, both relative to an origin [m].
 
     Parameters
     ----------
@@ -104,13 +104,12 @@ def project(points: list[Point], origin: Point, up: Point) -> tuple[list[float],
     ax, ay, az = ax / size, ay / size, az / size
     bx, by, bz = ay * uz - az * uy, az * ux - ax * uz, ax * uy - ay * ux
     ox, oy, oz = origin
-    first, second, heights = [], [], []
+    places, heights = [], []
     for x, y, z in points:
         dx, dy, dz = x - ox, y - oy, z - oz
-        first.append(ax * dx + ay * dy + az * dz)
-        second.append(bx * dx + by * dy + bz * dz)
+        places.append(complex(ax * dx + ay * dy + az * dz, bx * dx + by * dy + bz * dz))
         heights.append(ux * dx + uy * dy + uz * dz)
-    return first, second, heights
+    return places, heights
 
 
 def plane_normal(points: list[Point]) -> Point:
@@ -134,44 +133,39 @@ def plane_normal(points: list[Point]) -> Point:
     return (-a / size, -b / size, 1 / size)
 
 
-def polygon_margin(x: list[float], y: list[float]) -> float:
+def polygon_margin(points: list[complex]) -> float:
     """Return the signed distance of the origin from the edge of the convex hull, positive inside [m].
 
     Parameters
     ----------
-    x, y : list of float
-        Coordinates of the points [m]. Minus infinity without points.
+    points : list of complex
+        The points, x + iy [m]. Minus infinity without points.
     """
-    corners = sorted(zip(x, y, strict=True))
+    corners = sorted(points, key=lambda point: (point.real, point.imag))
     if len(corners) > 2:
         corners = [*_half_hull(corners), *_half_hull(corners[::-1])]
     if not corners:
         return -math.inf
     edges = list(zip([corners[-1], *corners], corners, strict=False))
     if len(corners) > 2:
-        depth = min((ax * (by - ay) - ay * (bx - ax)) / math.hypot(bx - ax, by - ay) for (ax, ay), (bx, by) in edges)
+        depth = min((start.conjugate() * (end - start)).imag / abs(end - start) for start, end in edges)
         if depth > 0:
             return depth
-    return -min(_segment_distance(a, b) for a, b in edges)
+    return -min(_segment_distance(start, end - start) for start, end in edges)
 
 
-def _half_hull(ordered: list[tuple[float, float]]) -> list[tuple[float, float]]:
+def _half_hull(ordered: list[complex]) -> list[complex]:
     """Return one side of the convex hull without its last corner (Andrew's monotone chain)."""
-    chain: list[tuple[float, float]] = []
-    for x, y in ordered:
-        while len(chain) > 1:
-            (ax, ay), (bx, by) = chain[-2], chain[-1]
-            if (bx - ax) * (y - ay) - (by - ay) * (x - ax) > 0:
-                break
+    chain: list[complex] = []
+    for point in ordered:
+        while len(chain) > 1 and ((chain[-1] - chain[-2]).conjugate() * (point - chain[-2])).imag <= 0:
             chain.pop()
-        chain.append((x, y))
-    chain.pop()
-    return chain
+        chain.append(point)
+    return chain[:-1]
 
 
-def _segment_distance(start: tuple[float, float], end: tuple[float, float]) -> float:
+def _segment_distance(start: complex, way: complex) -> float:
     """Return the distance of the origin from a segment."""
-    (x, y), (dx, dy) = start, (end[0] - start[0], end[1] - start[1])
-    square = dx * dx + dy * dy
-    fraction = min(max(-(x * dx + y * dy) / square, 0.0), 1.0) if square > 0 else 0.0
-    return math.hypot(x + fraction * dx, y + fraction * dy)
+    square = abs(way) ** 2
+    fraction = min(max(-(start.conjugate() * way).real / square, 0.0), 1.0) if square > 0 else 0.0
+    return abs(start + fraction * way)
