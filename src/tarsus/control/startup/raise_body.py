@@ -139,20 +139,22 @@ def _change_footholds(builder: SequenceBuilder, angles: Float[np.ndarray, "legs 
     Feet in the air are placed first. Then the tripods are moved, every second leg of the ring, and single legs where a
     tripod cannot be lifted.
     """
-    while (remaining := np.abs(angles - builder.angles).max(-1) > _SAME).any():
-        lifted = remaining & ~builder.contacts
-        if lifted.any():
+    remaining = np.abs(angles - builder.angles).max(-1) > _SAME
+    while remaining.any():
+        group = remaining & ~builder.contacts
+        if group.any():
             # These legs bear no load, so the support of the body does not change.
-            builder = _move(builder, lifted, angles, margin=0.0)
+            builder = _move(builder, group, angles, margin=0.0)
         else:
-            builder = _move_first_group(builder, remaining, angles)
+            builder, group = _move_first_group(builder, remaining, angles)
+        remaining = remaining & ~group
     return builder
 
 
 def _move_first_group(
     builder: SequenceBuilder, remaining: Bool[np.ndarray, "legs"], angles: Float[np.ndarray, "legs 3"]
-) -> SequenceBuilder:
-    """Move the first group of legs, tripods before single ones, that can be lifted with three feet on the ground."""
+) -> tuple[SequenceBuilder, Bool[np.ndarray, "legs"]]:
+    """Move the first group of legs, tripods before single ones, that leaves three feet on the ground; return it too."""
     failure = TarsusError(
         f"only {int(builder.contacts.sum())} feet are on the ground; lifting one of them requires at least "
         f"{_MIN_STANCE_FEET + 1}"
@@ -162,7 +164,7 @@ def _move_first_group(
     for group in (*tripods, *(legs == leg for leg in np.flatnonzero(remaining))):
         if group.any() and (builder.contacts & ~group).sum() >= _MIN_STANCE_FEET:
             try:
-                return _move(builder, group, angles, margin=builder.margin)
+                return _move(builder, group, angles, margin=builder.margin), group
             except TarsusError as error:
                 failure = error
     raise failure
