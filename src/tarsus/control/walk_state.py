@@ -1,4 +1,4 @@
-"""The states of walking; what passes from stage to stage of a tick."""
+"""The states of walking and the transitions between them; what passes from stage to stage of a tick."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from tarsus.control.walk.state import GaitState
 if TYPE_CHECKING:
     from jaxtyping import Float
 
-__all__ = ["TickState", "WalkState"]
+__all__ = ["TickState", "WalkState", "next_walk_state"]
 
 
 class WalkState(StrEnum):
@@ -29,6 +29,32 @@ class WalkState(StrEnum):
     STOPPING = "stopping"
     CHANGING_GAIT = "changing gait"
     SEARCHING = "searching"
+
+
+def next_walk_state(
+    state: WalkState, *, follows_twist: bool, at_rest: bool, changes_gait: bool = False, searches: bool = False
+) -> WalkState:
+    """Return the state after the present one; only a robot that stops comes to stand.
+
+    Parameters
+    ----------
+    state : WalkState
+        The present state; a standing robot is asked only once it starts to step.
+    follows_twist : bool
+        Whether the twist to follow is not zero.
+    at_rest : bool
+        Whether all feet are down at their rest footholds and nothing moves.
+    changes_gait, searches : bool, bool
+        Whether all feet touch down for another gait; whether the walk waits until its feet hold the robot.
+    """
+    if searches:
+        return WalkState.SEARCHING
+    if changes_gait:
+        return WalkState.CHANGING_GAIT
+    if follows_twist:
+        return WalkState.WALKING
+    # A walk that has just ended stops first, even if its feet are at rest already.
+    return WalkState.STANDING if at_rest and state is WalkState.STOPPING else WalkState.STOPPING
 
 
 class TickState(NamedTuple):

@@ -6,7 +6,7 @@ from tarsus.control.tick.components import WalkComponents
 from tarsus.control.walk.state import GaitState, StepInputs
 from tarsus.control.walk.stepper import advance
 from tarsus.control.walk.vertical_motion import moved_vertically
-from tarsus.control.walk_state import TickState, WalkState
+from tarsus.control.walk_state import TickState, next_walk_state
 
 __all__ = ["integrated"]
 
@@ -34,9 +34,7 @@ def integrated(walk: WalkComponents, tick: TickState, dt: float) -> TickState:
     else:
         after = scaling.follow(integrate, walk.solver.angles, dt, exact=bool(walk.ground.ground.crossing))
     targets.step(dt * scaling.rate, after.down)
-    walk.transitions.footholds.feet_landed(tick.gait.down, after.down)
-    after = walk.transitions.finish(after, dt)
-    return tick._replace(gait=after, walk_state=tick.walk_state if tick.standing else _walk_state(walk, tick, after))
+    return _finished(walk, tick, after, dt)
 
 
 def _step_inputs(walk: WalkComponents, tick: TickState, dt: float) -> StepInputs:
@@ -73,14 +71,19 @@ def _step_inputs(walk: WalkComponents, tick: TickState, dt: float) -> StepInputs
     )
 
 
-def _walk_state(walk: WalkComponents, tick: TickState, state: GaitState) -> WalkState:
-    """Return what a robot does after a tick in which it has not stood."""
-    if walk.ground.support.halts:
-        return WalkState.SEARCHING
-    if walk.transitions.changes_gait:
-        return WalkState.CHANGING_GAIT
-    if any(tick.twist.tolist()):
-        return WalkState.WALKING
-    at_rest = not any(state.twist.value.tolist()) and bool(state.down.all()) and walk.transitions.at_rest(state)
-    # A walk that has just ended stops first, even if its feet are at rest already.
-    return WalkState.STANDING if at_rest and tick.walk_state is WalkState.STOPPING else WalkState.STOPPING
+def _finished(walk: WalkComponents, tick: TickState, state: GaitState, dt: float) -> TickState:
+    """Return the state, once steps, transitions and searches that end with the tick have ended."""
+    walk.transitions.footholds.feet_landed(tick.gait.down, state.down)
+    state = walk.transitions.finish(state, dt)
+    if tick.standing:
+        return tick._replace(gait=state)
+    follows_twist = any(tick.twist.tolist())
+    still = not (follows_twist or any(state.twist.value.tolist())) and bool(state.down.all())
+    following = next_walk_state(
+        tick.walk_state,
+        follows_twist=follows_twist,
+        at_rest=still and walk.transitions.at_rest(state),
+        changes_gait=walk.transitions.changes_gait,
+        searches=walk.ground.support.halts,
+    )
+    return tick._replace(gait=state, walk_state=following)
