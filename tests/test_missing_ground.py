@@ -896,6 +896,11 @@ def test_a_robot_none_of_whose_feet_stands_is_lifted_and_does_not_tip():
     assert stepped(MissingGround(NAMES), deep, stands=(False, True, *[False] * 4)).tips != 0
 
 
+def landed(before, after):
+    """The legs whose feet are on the ground, and were not before."""
+    return np.flatnonzero(after.down & ~before.down).tolist()
+
+
 @pytest.mark.parametrize(("tips", "in_air"), [(True, False), (False, True)])
 @pytest.mark.parametrize(("phase", "due"), [(0.2, True), (0.8, False)])
 def test_feet_put_down_early_because_the_robot_tips_or_is_lifted_are_still_due(phase, due, tips, in_air):
@@ -913,6 +918,7 @@ def test_feet_put_down_early_because_the_robot_tips_or_is_lifted_are_still_due(p
     ground.missing.tips, ground.condition.airborne = complex(tips), float(in_air)
     after = ground.sense(touching, 0.01, state, timing=timing, angles=controller.angles.tolist())
     assert ground.condition.in_air == in_air
+    assert landed(state, after) == [0, 2, 4]
     assert after.down.all()
     assert timing.due(after, 0.0) == [on and due for on in lifted]
 
@@ -941,7 +947,7 @@ def test_while_the_walk_waits_a_foot_on_its_way_down_stands_on_lower_ground_that
 ):
     state, body, timing = touching_in_swing(phase, height, FeltFoot(speed=speed, top=0.03, top_phase=0.42))
     after = met_ground(state, body, MissingGround(NAMES), stopped=[], timing=timing, pace=pace)
-    assert after.down[0] == lands
+    assert landed(state, after) == [0] * lands
 
 
 @pytest.mark.parametrize(("phase", "tries"), [(0.5, 0), (0.6, 0), (0.7, 1)])
@@ -951,6 +957,7 @@ def test_a_foot_that_rises_along_an_obstacle_does_not_stand_on_it(phase, tries):
     state = state._replace(foothold=state.foothold + 0.05, felt=[rising, *state.felt[1:]])
     missing = MissingGround(NAMES)
     after = met_ground(state, body, missing, stopped=[], timing=timing, pace=1.0)
+    assert landed(state, after) == [0] * tries
     assert list(missing.places) == [0] * tries
     assert after.down[0] == bool(tries)
 
@@ -976,6 +983,7 @@ def test_a_foot_that_is_stopped_while_it_tries_again_is_drawn_back_once_more():
     for under_way in (True, False):
         feet = [rising if under_way else FeltFoot(), *state.felt[1:]]
         after = met_ground(state._replace(felt=feet), body, missing, stopped=[0], timing=timing, pace=0.0)
+        assert not landed(state, after)
         # Slides back, and rises; one that rises already goes on.
         assert (after.felt[0].slide != 0j) == (not under_way)
         assert after.felt[0].top == 0.05 if under_way else after.felt[0].top >= 0.0

@@ -13,8 +13,7 @@ from sample_stances import feet_at, pose_of, posture_of, setup_of
 from sample_walks import WAVE_OF_FOUR
 from tarsus.control.incremental import complete
 from tarsus.control.limitation import Cause, Limitation, LimitationKind
-from tarsus.control.transition.planner import _TIPPING as TIPPING
-from tarsus.control.transition.planner import TransitionPlanner
+from tarsus.control.transition.planner import TIPPING, TransitionPlanner
 from tarsus.control.transition.stance_transition import StanceTarget, StanceTransition, WalkParameters, target_stance
 from tarsus.gait.gait import Gait
 from tarsus.gait.stance.stance_geometry import SWING_HEIGHT, rotation_rows, stance_geometry_of

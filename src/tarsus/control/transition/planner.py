@@ -22,9 +22,9 @@ from tarsus.gait.walk_setup import WalkSetup, require_number
 from tarsus.robot.joint_limits import JointLimits
 from tarsus.robot.robot import Robot
 
-__all__ = ["TransitionPlanner"]
+__all__ = ["TIPPING", "TransitionPlanner"]
 
-_TIPPING = Cause("the robot would tip over")
+TIPPING = Cause("the robot would tip over")
 _UNREACHABLE = Cause("no leg reaches the ground at this height")
 _LEAST_FRACTION = 0.02
 # The least move of the body that is made for its own [m, rad]: every one brings the commanded posture closer.
@@ -121,8 +121,8 @@ class TransitionPlanner:
             check = StabilityCheck(robot, sets, parameters.excluded)
             reachable = fraction = yield from balanced_fraction(check, present, end, fraction)
             if fraction == 0:
-                return _TIPPING
-            cause, goal = _TIPPING, present.towards(end, fraction)
+                return TIPPING
+            cause, goal = TIPPING, present.towards(end, fraction)
             limits = yield from self._limits(parameters, goal)
         first: Cause | None = None
         while isinstance(found := (yield from self._increment(parameters, present, goal, limits)), Cause):
@@ -146,7 +146,7 @@ class TransitionPlanner:
     ) -> Incremental[StanceTransition | Cause]:
         """Find a way to a stance, with its limits there; or else one on which only the body moves."""
         if not limits.balanced:
-            return _TIPPING
+            return TIPPING
         if not limits.feasible and any(parameters.sway):
             return Cause("end of the leg's reach as the body sways", self.robot.leg_names[limits.limiting_leg])
         if not limits.feasible:
@@ -184,7 +184,7 @@ class TransitionPlanner:
                 final_limits=final,
             )
         if not on_path.balanced:
-            return _TIPPING._replace(reason=f"{_TIPPING.reason} on the way")
+            return TIPPING._replace(reason=f"{TIPPING.reason} on the way")
         return Cause("could not stand and step on the way", self.robot.leg_names[on_path.limiting_leg])
 
     def _limits(self, parameters: WalkParameters, stance: StanceTarget) -> Incremental[VelocityLimits]:
