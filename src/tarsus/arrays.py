@@ -29,7 +29,6 @@ __all__ = [
     "only_where_needed",
     "read_only",
     "require_finite",
-    "require_finite_float",
     "require_float",
     "require_shape",
     "root",
@@ -134,40 +133,27 @@ def is_traced(array: Any) -> bool:
     return jax is not None and isinstance(array, jax.core.Tracer)
 
 
-def require_float(name: str, value: float) -> float:
+def require_float(name: str, value: float, *, finite: bool = False) -> float:
     """Return a number as a float.
 
     Parameters
     ----------
     name, value : str, float
         Its name in messages; the number.
+    finite : bool
+        Whether it must be finite.
 
     Raises
     ------
     InputError
-        If it is not a number.
+        If it is not a number, or not finite where it must be.
     """
     try:
-        return float(value)
+        number = float(value)
     except (TypeError, ValueError):
         raise InputError(f"{name} is {value!r}; it must be a number") from None
-
-
-def require_finite_float(name: str, value: float) -> float:
-    """Return a finite number as a float.
-
-    Parameters
-    ----------
-    name, value : str, float
-        Its name in messages; the number.
-
-    Raises
-    ------
-    InputError
-        If it is not a number, or not finite.
-    """
-    number = require_float(name, value)
-    require_finite(name, np.array(number))
+    if finite:
+        require_finite(name, np.array(number))
     return number
 
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, Protocol, runtime_checkable
 
 import numpy as np
 
-from tarsus.arrays import require_finite_float
+from tarsus.arrays import require_float
 from tarsus.control.control_output import ControlOutput
 from tarsus.control.readings import RollPitch, SensorReadings
 from tarsus.kinematics.mass import known_weight
@@ -84,7 +84,7 @@ class Environment:
             Number of the leg; over flat ground [m].
         """
         require_leg_number("environment", leg, len(self._height))
-        self._height[leg], self._contacts = require_finite_float("height", height), True
+        self._height[leg], self._contacts = require_float("height", height, finite=True), True
 
     def set_tilt(self, roll: float, pitch: float) -> None:
         """Set by how much the ground is tilted; an attitude sensor is present from then on.
@@ -94,7 +94,7 @@ class Environment:
         roll, pitch : float
             Left side up, front down, as the robot sees it wherever it turns [rad].
         """
-        self._tilt = require_finite_float("roll", roll), require_finite_float("pitch", pitch)
+        self._tilt = require_float("roll", roll, finite=True), require_float("pitch", pitch, finite=True)
         self._attitude = True
 
     def set_force(self, leg: int, force: float) -> None:
@@ -106,7 +106,7 @@ class Environment:
             Number of the leg; ground on foot [N].
         """
         require_leg_number("environment", leg, len(self._force))
-        self._force[leg], self._forces = require_finite_float("force", force), True
+        self._force[leg], self._forces = require_float("force", force, finite=True), True
 
     def readings(self, output: ControlOutput) -> dict[str, Any]:
         """Return what is measured, by the names of `SensorReadings`.

@@ -126,18 +126,23 @@ class Stage:
             angles[:, self.cartesian] = self._solve(fractions)[:, self.cartesian]
         return angles
 
+    @cached_property
+    def _branches(self) -> Bool[np.ndarray, "legs 2"]:
+        """The solution of inverse kinematics that each leg starts with."""
+        return branches(self.robot, self.angles)
+
     def _solve(self, fractions: Float[np.ndarray, "n"]) -> Float[np.ndarray, "n legs 3"]:
         """Return the inverse kinematics of all feet, each leg with the solution that it starts with."""
         g = self.robot.geometry
         points = points_in_body(self.body_at(fractions), self.feet_at(fractions))
         x, y, z = to_leg_frame(g, points[..., 0], points[..., 1], points[..., 2])
         min_bend = _MIN_BEND**2 * g.femur * g.tibia
-        solved, branch = np.full(points.shape, np.nan), branches(self.robot, self.angles)
-        for behind, up in set(map(tuple, branch[self.cartesian].tolist())):
+        solved = np.full(points.shape, np.nan)
+        for behind, up in set(map(tuple, self._branches[self.cartesian].tolist())):
             with np.errstate(invalid="ignore"):
                 found = solve_triangle(np, g, x, y, z, knee=-1 if up else 1, facing=-1 if behind else 1)
             bent = (found.far >= min_bend) & (found.near >= min_bend) & (found.beside >= 0)
-            ok = bent & (branch == (behind, up)).all(axis=-1)
+            ok = bent & (self._branches == (behind, up)).all(axis=-1)
             solved = np.where(ok[..., None], np.stack(found[:3], axis=-1), solved)
         # The equivalent angle nearest to the start.
         return np.asarray(solved - _FULL_TURN * np.round((solved - self.angles) / _FULL_TURN))

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from tarsus.arrays import require_finite_float
+from tarsus.arrays import require_float
 from tarsus.control.incremental import Incremental, complete
 from tarsus.control.limitation import Cause, Limitation, LimitationKind
 from tarsus.control.transition.feasible_fraction import balanced_fraction, first_increment, reachable_fraction
@@ -67,7 +67,7 @@ class TransitionPlanner:
         UnreachableError
             If the robot can't stand and step so.
         """
-        stance_width = require_finite_float("stance_width", stance_width)
+        stance_width = require_float("stance_width", stance_width, finite=True)
         if cycle_time is not None:
             cycle_time = require_number("cycle_time", cycle_time, zero=False)
         parameters = WalkParameters(
