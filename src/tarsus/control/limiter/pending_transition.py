@@ -38,6 +38,7 @@ class PendingTransitionLimiter:
         planned = self._transitions.scheduler.planned
         stands = planned is not None and self._transitions.timing.stands_before(planned.parameters.gait)
         self._fraction *= 0.0 if stands else math.exp(-request.dt / _TIME_CONSTANT)
-        slow = Limitation(kind=LimitationKind.TWIST, cause=_CAUSE, asked=1.0, granted=self._fraction)
-        reported = self._fraction < _REPORTED and any(request.twist)
-        return grant.at_most(self._fraction, *([slow] if reported else []))
+        if self._fraction < _REPORTED and any(request.twist):
+            slow = Limitation(kind=LimitationKind.TWIST, cause=_CAUSE, asked=1.0, granted=self._fraction)
+            return grant.at_most(self._fraction, slow)
+        return grant.at_most(self._fraction)

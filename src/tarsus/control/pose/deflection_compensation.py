@@ -102,8 +102,7 @@ class DeflectionCompensation:
             Which feet bear load: they share the robot's weight out where forces are not measured.
         """
         if self.offsets is None:
-            loads_known = valid.forces is not None or self._weight > 0.0
-            if valid.joint_angles is None or not (loads_known and self._legs):
+            if valid.joint_angles is None or not self._legs or (valid.forces is None and not self._weight):
                 return
             self._needed = self._needed or self._needed_friction(angles)
             if self._needed + slope < _FRICTION:

@@ -37,8 +37,7 @@ class FeetMonitor:
     def __init__(self, robot: Robot, bounds: GuardBounds) -> None:
         self._model, self._codes = LegModel(robot), robot.leg_codes
         self._radius: list[float] = robot.foot_radius.tolist()
-        self._margin, self._drag, self._height = bounds.margin, bounds.foot_drag, bounds.foot_height
-        self._slope = math.tan(bounds.ground_slope)
+        self._bounds, self._slope = bounds, math.tan(bounds.ground_slope)
         self.stance: list[bool] | None = None
         self.up: Point = (0.0, 0.0, 1.0)
         self._references: _References = {}
@@ -68,8 +67,8 @@ class FeetMonitor:
         self._checked = stance, up, references
         places, heights = project(stance_feet, com, up)
         margin = polygon_margin(places)
-        if not margin >= self._margin:
-            found.append(Intervention(InterventionKind.STABILITY_MARGIN, "", "", margin, self._margin))
+        if not margin >= self._bounds.margin:
+            found.append(Intervention(InterventionKind.STABILITY_MARGIN, "", "", margin, self._bounds.margin))
         if len(legs) > 1:
             found += self._height_violations(legs, places, heights)
         return found
@@ -96,7 +95,7 @@ class FeetMonitor:
             reference = self._references.get((i, j), (distance, tilts[i], tilts[j]))
             references[i, j] = stood, tilt_i, tilt_j = reference
             rolled = self._radius[i] * abs(tilts[i] - tilt_i) + self._radius[j] * abs(tilts[j] - tilt_j)
-            drag, bound = abs(distance - stood), self._drag + rolled
+            drag, bound = abs(distance - stood), self._bounds.foot_drag + rolled
             if drag > bound:
                 found.append(Intervention(InterventionKind.FOOT_DRAG, self._codes[j], "", drag, bound))
         return found, references
@@ -105,7 +104,7 @@ class FeetMonitor:
         """Return the stance feet too far above or below the mean height of all stance feet."""
         middle, mean, found = sum(places) / len(places), sum(heights) / len(heights), []
         for leg, place, height in zip(legs, places, heights, strict=True):
-            offset, bound = abs(height - mean), self._height + self._slope * abs(place - middle)
+            offset, bound = abs(height - mean), self._bounds.foot_height + self._slope * abs(place - middle)
             if offset > bound:
                 found.append(Intervention(InterventionKind.FOOT_HEIGHT, self._codes[leg], "", offset, bound))
         return found

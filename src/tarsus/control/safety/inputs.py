@@ -33,7 +33,9 @@ def read_angles(angles: Any, names: list[tuple[str, str]], violations: list[Inte
         return None
     values = list(map(float, listed))
     # Only the sum of values that are not finite, or of very great ones, is not finite.
-    for name, value in () if math.isfinite(sum(values)) else zip(names, values, strict=True):
+    if math.isfinite(sum(values)):
+        return values
+    for name, value in zip(names, values, strict=True):
         if not math.isfinite(value):
             violations.append(Intervention(InterventionKind.NOT_FINITE, *name, value, math.nan))
             return None

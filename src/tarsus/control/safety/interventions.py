@@ -142,7 +142,7 @@ class InterventionLog:
     ----------
     latest : deque of Intervention
         The latest interventions at the tick they began, oldest first.
-    counts, worst : mapping of InterventionKind to (int, Intervention)
+    counts, worst : mapping of InterventionKind to int, and to Intervention
         How many interventions of each kind began; the worst of each.
 
     Parameters

@@ -50,10 +50,9 @@ class JointMonitor:
         motion = np.stack([bounds.speed, bounds.acceleration], axis=-1)
         # Of each joint: lower and upper limit, greatest speed and acceleration.
         self._bounds: list[list[float]] = np.concatenate([bounds.limits, motion], axis=-1).reshape(-1, 4).tolist()
-        self._recovery_speeds: list[float] = (bounds.recovery_speed * bounds.speed).ravel().tolist()
         self.angles: list[float] = [min(max(0.0, low), high) for low, high, _, _ in self._bounds]
         self.speeds = [0.0] * len(self._bounds)
-        self._step = 0.0
+        self._step, self._recovery = 0.0, bounds.recovery_speed
 
     @property
     def at_rest(self) -> bool:
@@ -160,12 +159,11 @@ class JointMonitor:
             Commanded angles of the last step and of this one, in flat lists [rad]; time step [s].
         """
         matches, velocities = True, []
-        for last_angle, last, angle, recovery_speed, (_, _, max_speed, max_acceleration) in zip(
-            self.angles, last_command, command, self._recovery_speeds, self._bounds, strict=True
-        ):
+        joints = zip(self.angles, last_command, command, self._bounds, strict=True)
+        for last_angle, last, angle, (_, _, max_speed, max_acceleration) in joints:
             gap, commanded = last - last_angle, (angle - last) / step
             # Half of the acceleration is reserved for changes of the commanded velocity.
-            closing = min(_stoppable_speed(abs(gap), max_acceleration / 2, step), recovery_speed)
+            closing = min(_stoppable_speed(abs(gap), max_acceleration / 2, step), self._recovery * max_speed)
             velocities.append(min(max(commanded, -max_speed), max_speed) + math.copysign(closing, gap))
             matches = matches and abs(gap) <= max_acceleration * step * step / 2
         if matches and not self.motion_violations(command, step):
@@ -178,9 +176,8 @@ class JointMonitor:
         """Move the joints at the nearest velocities within their bounds."""
         interval = (step + self._step) / 2
         angles = []
-        for velocity, last_angle, last_speed, (low, high, max_speed, max_acceleration) in zip(
-            velocities, self.angles, self.speeds, self._bounds, strict=True
-        ):
+        joints = zip(velocities, self.angles, self.speeds, self._bounds, strict=True)
+        for velocity, last_angle, last_speed, (low, high, max_speed, max_acceleration) in joints:
             change = max_acceleration * interval
             # The intervals overlap up to rounding; the last one applied takes precedence.
             lowest = -_stoppable_speed(last_angle - low, max_acceleration, step)
