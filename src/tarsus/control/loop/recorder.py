@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections import Counter
 from typing import TYPE_CHECKING, Any
 
@@ -186,7 +185,7 @@ class Recorder:
 def _vectors(values: Any, legs: int) -> Float[np.ndarray, "legs 3"]:
     """Return what is measured of the joints of every leg as numbers; NaN where it is no number."""
     items = as_items(values, (legs, 3)) or [None] * legs
-    return np.array([as_vector(item) or (math.nan,) * 3 for item in items])
+    return np.array([*map(as_vector, items)])
 
 
 def _part(command: Command, kind: LimitationKind) -> Any:

@@ -37,7 +37,6 @@ _TURNS = f"changes faster than {math.degrees(_MOST_TURN):.4g} deg/s"
 _OUTSIDE, _JUMP, _FASTER = 0.5, 0.5, 2.0
 _FINITE = (-sys.float_info.max, sys.float_info.max)
 _Bounds: TypeAlias = "tuple[float | Float[np.ndarray, '...'], float | Float[np.ndarray, '...']]"
-_NOT_NUMBERS = (math.nan, math.nan, math.nan)
 # Greatest force on one foot, in weights of the robot, and greatest torque, in stall torques of the joint's servo.
 _MOST_WEIGHTS, _MOST_STALLS = 4.0, 1.5
 # Bounds where the robot's masses or servos are unknown, above those of any robot this is made for [N], [N m].
@@ -138,10 +137,8 @@ class _AngularRateChannel(_Channel):
 
     def read(self, value: Any, rejected: list[str]) -> Vector | None:
         """Return the reading if it is accepted; the reason of a rejection is appended to `rejected`."""
-        reading: Vector | str = as_vector(value) or "expected three numbers"
-        if not (isinstance(reading, str) or all(map(math.isfinite, reading))):
-            reading = "not finite numbers"
-        return self._accepted(0, reading, rejected)
+        reading = as_vector(value)
+        return self._accepted(0, reading if all(map(math.isfinite, reading)) else "not three finite numbers", rejected)
 
 
 class _GroundChannel(_Channel):
@@ -239,7 +236,7 @@ class _VectorChannel(_LegChannel):
 
     def _read_leg(self, leg: int, value: Any) -> Vector | str:
         alone = as_number(value) if self._accept_z and type(value) is not list else math.nan
-        vector = as_vector(value) or _NOT_NUMBERS if math.isnan(alone) else (0.0, 0.0, alone)
+        vector = as_vector(value) if math.isnan(alone) else (0.0, 0.0, alone)
         if self._is_plausible(leg, vector):
             return vector
         return self._beyond if all(map(math.isfinite, vector)) else "not finite numbers"
@@ -275,7 +272,7 @@ class _JointAngleChannel(_VectorChannel):
         bounds = limits[..., 0] - _OUTSIDE, limits[..., 1] + _OUTSIDE
         super().__init__("joint_angles", legs, bounds, beyond=beyond)
         # The last plausible angles of all legs, NaN before, and when those of each leg were read.
-        self._last, self._read, self._speed = [*_NOT_NUMBERS] * len(legs), [0.0] * len(legs), speed
+        self._last, self._read, self._speed = [math.nan] * 3 * len(legs), [0.0] * len(legs), speed
 
     def _read_usual(self, numbers: list[float]) -> tuple[Vector, ...] | None:
         found = super()._read_usual(numbers) if math.dist(numbers, self._last) <= _JUMP else None

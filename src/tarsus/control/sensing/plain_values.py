@@ -56,10 +56,8 @@ def as_items(value: Any, *shapes: tuple[int, ...]) -> Sequence[Any] | None:
         return None
 
 
-def as_vector(value: Any) -> tuple[float, float, float] | None:
-    """Return three numbers, each NaN if it is not a real number; None if there are not three items."""
+def as_vector(value: Any) -> tuple[float, float, float]:
+    """Return three numbers, each NaN if it is not a real number, or if there are not three items."""
     parts = value if type(value) is list and len(value) == 3 else as_items(value, (3,))
-    if parts is None:
-        return None
-    x, y, z = map(as_number, parts)
+    x, y, z = map(as_number, parts or (None, None, None))
     return x, y, z

@@ -21,9 +21,9 @@ _MOST_AGE, _MOST_TICKS = 0.1, 4.0
 # Ages of the joints of each leg, where they are given one by one.
 _Ages: TypeAlias = tuple[Vector, ...] | None
 
-_NO_READINGS, _NO_AGES, _NONE = ValidReadings(), (math.nan, math.nan, math.nan), frozenset[int]()
+_NO_READINGS, _NONE = ValidReadings(), frozenset[int]()
 _VALUES, _JOINT_ANGLES = attrgetter(*CHANNELS), CHANNELS.index("joint_angles")
-_BAD_AGE = "age is not a number >= 0 s"
+_BAD_AGE = "age is not a number >= 0 s, nor one for each joint"
 
 
 class ReadingsValidator:
@@ -122,7 +122,7 @@ def _channel_ages(readings: SensorReadings, most: float, *, legs: int) -> tuple[
     for name, value in given.items():
         ages[name] = as_number(value)
         if math.isnan(ages[name]) and (rows := as_items(value, (legs, 3))):
-            vectors = tuple(as_vector(row) or _NO_AGES for row in rows)
+            vectors = tuple(map(as_vector, rows))
             ages[name] = _oldest(chain(*vectors))
             if name == "joint_angles":
                 of_joints, ages[name] = vectors, 0.0
