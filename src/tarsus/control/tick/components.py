@@ -17,14 +17,14 @@ __all__ = ["WalkComponents"]
 
 
 class WalkComponents:
-    """The components of a walk controller; all its state besides the gait state and the twist is in them.
+    """The components of a walk controller; they hold what lasts from tick to tick besides the `TickState`.
 
     Parameters
     ----------
     planner, stance : TransitionPlanner, StanceTransition
         Plans stance transitions of the robot; the stance at the start.
     body, loads : BodyMotion, FootLoads
-        How the body moves on ground that is felt; the loads of the feet.
+        Body motion on ground that is felt; loads of the feet.
 
     Attributes
     ----------
@@ -35,9 +35,9 @@ class WalkComponents:
     transitions : TransitionExecutor
         The stance, the gait, and the transitions to others.
     foot_targets : FootTargets
-        The legs that are taken out of the gait.
+        The legs taken out of the gait, and the motion of their feet.
     ground : FeltGround
-        What is felt of the ground.
+        What readings tell about the ground, and how feet and body respond.
     solver : JointSolver
         Solves gait states for joint angles.
     time_scaling : TimeScaling

@@ -14,7 +14,7 @@ _NO_MOTION = (0.0,) * 6
 
 
 def integrated(walk: WalkComponents, tick: TickState, dt: float) -> TickState:
-    """Return the state after the tick; the time scaling has its joint angles.
+    """Return the state after the tick; its joint angles are in the time scaling.
 
     Parameters
     ----------
@@ -38,7 +38,7 @@ def integrated(walk: WalkComponents, tick: TickState, dt: float) -> TickState:
 
 
 def _step_inputs(walk: WalkComponents, tick: TickState, dt: float) -> StepInputs:
-    """Return what the stepper is given for a tick."""
+    """Return the inputs of the stepper for a tick."""
     state, standing = tick.gait, tick.standing
     transitions = walk.transitions
     timing, pose, parameters = transitions.timing, transitions.pose, transitions.current.parameters
@@ -72,7 +72,7 @@ def _step_inputs(walk: WalkComponents, tick: TickState, dt: float) -> StepInputs
 
 
 def _finished(walk: WalkComponents, tick: TickState, state: GaitState, dt: float) -> TickState:
-    """Return the state, once steps, transitions and searches that end with the tick have ended."""
+    """Return the state after completing the steps, transitions and searches that end with the tick."""
     walk.transitions.footholds.feet_landed(tick.gait.down, state.down)
     state = walk.transitions.finish(state, dt)
     if tick.standing:

@@ -17,7 +17,7 @@ __all__ = ["limited", "twist_limiters"]
 
 
 def twist_limiters(walk: WalkComponents) -> list[TwistLimiter]:
-    """Return the twist limiters in their order; the governor sets the twist from what those before it leave."""
+    """Return the twist limiters in their order; the last, the governor, sets the twist from what the others grant."""
     ground, roughness, stance = walk.ground, walk.ground.body.roughness, walk.ground.body.stance
 
     def rate(twist: Sequence[float]) -> float | None:
@@ -44,7 +44,7 @@ def twist_limiters(walk: WalkComponents) -> list[TwistLimiter]:
 def limited(
     walk: WalkComponents, tick: TickState, command: Command, dt: float, limiters: Sequence[TwistLimiter]
 ) -> TickState:
-    """Return the state with the twist to follow; a robot that stands starts to step if there is a reason to.
+    """Return the state with the twist to follow; a standing robot starts to step if there is a reason to.
 
     Parameters
     ----------
@@ -62,9 +62,9 @@ def limited(
     shift = transitions.body_shift if steps else None
     shifted = transitions.pose.set_shift(shift, state.shift.value)
     if not steps or (standing and not shifted):
-        # Every foot stays on the ground until the body is over those that stay.
+        # A standing robot keeps every foot on the ground until the body is over those that stay in the first step.
         return tick._replace(gait=state if steps else tick.gait, limitations=grant.limitations)
     assert grant.target is not None  # the governor sets it
-    # What a robot does that stands no more is found at the end of the tick.
+    # A robot that no longer stands counts as stopping until the end of the tick, where its walk state is decided.
     following = WalkState.STOPPING if standing else tick.walk_state
     return TickState(state, grant.target, following, grant.limitations)

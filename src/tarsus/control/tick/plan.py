@@ -1,4 +1,4 @@
-"""Plan: what a command asks of the stance, transitions to that, and the targets of legs taken out of the gait."""
+"""Plan: the stance that a command asks for, transitions to it, and the targets of legs taken out of the gait."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 __all__ = ["CommandIntake", "planned"]
 
 _NO_MOTION = (0.0,) * 6
-# Shifts of the body that are tried when legs leave the gait [m].
+# Shifts of the body that are tried when legs leave the gait: along each axis, and all of them as x + iy [m].
 _STEPS = np.arange(-4, 5) * 0.01
 _SHIFTS = (_STEPS[:, None] + 1j * _STEPS).ravel()
 _SHIFTED = "x and y are those over the feet that stay while a leg is out of the gait"
@@ -49,13 +49,13 @@ class CommandIntake:
     def __init__(self, robot: Robot, transitions: TransitionExecutor) -> None:
         self._robot, self._transitions = robot, transitions
         self._last: Command | None = None
-        # Legs, gait and body pose for which the shift is.
+        # Excluded legs, gait and body pose for which the shift was found.
         self._shifted_for: tuple[object, ...] = ()
         self._shift = 0j
 
     @property
     def limitations(self) -> tuple[Limitation, ...]:
-        """A body pose that the body can't have while a leg is out of the gait."""
+        """The limitation of a body pose whose x and y are not followed while a leg is out of the gait."""
         moved = self._shifted_for and any(self._transitions.scheduler.requested.body[:2])
         return (Limitation(kind=LimitationKind.BODY, cause=_SHIFTED),) if moved else ()
 
@@ -86,7 +86,7 @@ class CommandIntake:
             self._last = command
 
     def _correction(self, excluded: tuple[int, ...], angles: Float[np.ndarray, "legs 3"]) -> tuple[float, ...]:
-        """Return the correction of the body pose for legs that bear no load."""
+        """Return the correction of the body pose that makes up for legs that bear no load."""
         if not excluded:
             self._shifted_for = ()
             return _NO_MOTION
@@ -95,14 +95,14 @@ class CommandIntake:
         if shifts_for != self._shifted_for:
             (x, y, _), sets = centre_of_mass(self._robot, angles).tolist(), support_sets(requested.gait, excluded)
             centre = cmath.exp(1j * requested.body[5]) * complex(x, y)
-            # Of a body in the middle of its feet, from where all directions cost as much reach.
+            # The centre of mass with the body in the middle of its feet, from where all directions cost the same reach.
             best = _best_shift(self._transitions.footholds.new_rest, centre, sets)
             self._shifted_for, self._shift = shifts_for, best - complex(*requested.body[:2])
         return (self._shift.real, self._shift.imag, 0.0, 0.0, 0.0, 0.0)
 
 
 def planned(walk: WalkComponents, tick: TickState, command: Command, dt: float) -> TickState:
-    """Return the state after one stage of planning; what may begin, begins.
+    """Return the state after one stage of planning; a planned transition begins as soon as it may.
 
     Parameters
     ----------
@@ -119,7 +119,7 @@ def planned(walk: WalkComponents, tick: TickState, command: Command, dt: float) 
 def _plan_transition(
     walk: WalkComponents, state: GaitState, parameters: WalkParameters, stay: bool
 ) -> Incremental[StanceTransition | Cause]:
-    """Plan the transition from the present stance; where legs leave the gait, check the support of the others first."""
+    """Plan the transition from the present stance; for legs out of the gait, first check the support of the others."""
     excluded = parameters.excluded
     if excluded:
         yield
@@ -134,9 +134,9 @@ def _plan_transition(
 
 
 def _best_shift(rest: Complex[np.ndarray, "legs"], centre: complex, sets: Bool[np.ndarray, "n legs"]) -> complex:
-    """Return the shift of the centre of mass with the greatest stability margin; of similar ones the smallest [m].
+    """Return the shift of the centre of mass with the greatest stability margin; among similar ones the smallest [m].
 
-    `rest` are the rest footholds [m], `sets` the feet that are in stance together.
+    `rest` are the rest footholds [m], `sets` the sets of feet that are in stance together.
     """
     feet = np.stack([rest.real, rest.imag], axis=-1)
     centres = np.array([[(centre + shift).real, (centre + shift).imag] for shift in _SHIFTS])
