@@ -1,1 +1,1 @@
-"""Speed limiters: each returns how much of the commanded twist it allows."""
+"""Twist limiters: each returns how much of the commanded twist it allows."""

@@ -1,4 +1,4 @@
-"""Lost time: what the ground costs, and how much faster than commanded the walk makes up for it."""
+"""Lost time: how much the ground has cost, and how much faster than commanded the walk makes up for it."""
 
 from __future__ import annotations
 
@@ -9,24 +9,25 @@ from tarsus.control.limiter.protocol import TwistGrant, TwistRequest
 
 __all__ = ["LostTime"]
 
-# Time that is remembered at most, and from which on the walk is as fast as it may be [s].
+# Most lost time that is remembered, and the lost time from which the walk is as fast as it may be [s].
 _MEMORY, _WHOLE = 3.0, 1.0
-# The speed changes in this many steps: each has limits computed anew.
+# The speed changes in this many steps only, as the limits are computed anew for each.
 _STEPS = 4
-# Cosine of the angle from which on a command leads elsewhere, and how far out turning counts as walking [m].
+# Cosine of the angle between two twists at and below which the new one leads elsewhere; lever arm at which turning
+# counts as walking [m].
 _ELSEWHERE, _OUT = 0.9, 0.2
 
 
 class LostTime:
-    """Asks for more than the commanded twist after the walk has waited for the ground, until the mean is as commanded.
+    """Asks for more than the commanded twist after the ground has delayed the walk, until the mean is as commanded.
 
     Parameters
     ----------
     most : float
-        Greatest speed over the commanded one, at least 1.
+        Greatest ratio of the speed to the commanded one, at least 1.
     rate : callable
-        Returns the rate at which the ground lets the walk advance along a commanded twist, at most 1 and negative
-        while the body backs off, or None while the robot is carried.
+        Returns the rate at which the ground lets the walk advance along a commanded twist: 1 at most, negative while
+        the body backs off, None while the robot is carried.
     """
 
     def __init__(self, most: float, rate: Callable[[Sequence[float]], float | None]) -> None:
@@ -34,10 +35,10 @@ class LostTime:
         self._twist: tuple[float, ...] = (0.0, 0.0, 0.0)
 
     def limit(self, request: TwistRequest, grant: TwistGrant) -> TwistGrant:
-        """Return the grant, with a greater fraction as long as time is to be made up for."""
+        """Return the grant, with a greater fraction as long as there is lost time to make up for."""
         twist, first = request.twist, self._twist
         square = _dot(twist, twist)
-        # Small changes of the command add up: it is compared with the one with which time was lost first.
+        # The command is compared with the one under which time was first lost, as small changes add up.
         if not self._lost or _dot(twist, first) <= _ELSEWHERE * math.sqrt(square * _dot(first, first)):
             self._twist, self._lost = twist, 0.0
         rate = self._rate(twist) if request.state.felt and square else None

@@ -12,13 +12,13 @@ __all__ = ["PendingTransitionLimiter"]
 
 # Time constant of the slow-down [s].
 _TIME_CONSTANT = 1.0
-# A fraction below this is reported: the transition has been waiting for longer than it takes in regular walking.
+# A fraction below this is reported: by then the transition has waited for longer than it does in regular walking.
 _REPORTED = 0.05
 _CAUSE = "the pending stance transition cannot begin at a higher speed"
 
 
 class PendingTransitionLimiter:
-    """Reduces the twist exponentially for as long as a transition waits.
+    """Reduces the twist while a transition waits: exponentially, or to 0 at once where the robot has to stand for it.
 
     Parameters
     ----------
@@ -31,7 +31,7 @@ class PendingTransitionLimiter:
         self._fraction = 1.0
 
     def limit(self, request: TwistRequest, grant: TwistGrant) -> TwistGrant:
-        """Return the grant, reduced by the time that the transition has been waiting."""
+        """Return the grant, reduced according to how long the transition has been waiting."""
         if not self._transitions.waiting:
             self._fraction = 1.0
             return grant

@@ -19,12 +19,12 @@ if TYPE_CHECKING:
 
 __all__ = ["TwistGrant", "TwistLimiter", "TwistRequest", "leads_towards"]
 
-# Motion within an angle of this cosine of a way leads there.
+# A velocity leads along a way if the cosine of the angle between them is greater than this.
 _TOWARDS = 0.3
 
 
 class TwistRequest(NamedTuple):
-    """What a twist limiter decides on.
+    """The commanded twist, and the state on which a twist limiter bases its decision.
 
     Attributes
     ----------
@@ -35,7 +35,7 @@ class TwistRequest(NamedTuple):
     state : GaitState
         The gait state at the start of the tick.
     target : array, shape (3,)
-        The twist that is followed so far.
+        The twist to follow as of the last tick.
     """
 
     twist: tuple[float, ...]
@@ -62,7 +62,7 @@ class TwistGrant(NamedTuple):
     limitations: tuple[Limitation, ...] = ()
 
     def at_most(self, fraction: float, *limitations: Limitation) -> TwistGrant:
-        """Return the grant with a fraction no greater than another, and with limitations to report, if any."""
+        """Return the grant with its fraction capped at another one, and with further limitations to report, if any."""
         return TwistGrant(min(self.fraction, fraction), self.target, (*self.limitations, *limitations))
 
     def scaled(self, twist: Sequence[float]) -> list[float]:
@@ -79,11 +79,11 @@ class TwistLimiter(Protocol):
         Parameters
         ----------
         request, grant : TwistRequest, TwistGrant
-            The commanded twist, and what decides on it; what the limiters before this one have left.
+            The commanded twist and the state to judge it by; what the limiters before this one have granted.
         """
         ...
 
 
 def leads_towards(velocity: complex, way: complex) -> bool:
-    """Return whether a velocity leads to what is at the end of a way, in one frame; without either, to nothing."""
+    """Return whether a velocity leads to the end of a way, both in the same frame; false where either is 0."""
     return (velocity * way.conjugate()).real > _TOWARDS * abs(velocity * way)

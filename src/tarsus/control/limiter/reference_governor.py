@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 __all__ = ["GovernorLimiter"]
 
-# Relative difference at which a twist counts as steady.
+# Relative difference from the commanded twist up to which the twist counts as steady.
 _STEADY = 1e-3
 
 
@@ -29,12 +29,12 @@ class GovernorLimiter:
     Parameters
     ----------
     transitions, looks : TransitionExecutor, callable
-        The stance and its transitions; returns whether a walk that feels the ground looks at it in this tick.
+        The stance and its transitions; returns whether a walk that feels the ground takes a look in this tick.
     """
 
     def __init__(self, transitions: TransitionExecutor, looks: Callable[[], bool]) -> None:
         self._transitions, self._looks = transitions, looks
-        # The target that was found last, and for which command and stance.
+        # The target that was found last; the command and the stance for which it was found.
         self._target: Float[np.ndarray, "3"] = np.zeros(3)
         self._command, self._stance = list[float](), tuple[Any, ...]()
 
@@ -42,8 +42,8 @@ class GovernorLimiter:
         """Return the grant with the twist to follow."""
         state, transitions, command = request.state, self._transitions, grant.scaled(request.twist)
         stance = (state.down, transitions.timing, transitions.changes_gait, transitions.footholds.bounds)
-        # While the same feet stand, what was feasible stays so. Feet that follow the ground stray from what was
-        # predicted: with these, each target is examined whenever the ground is looked at.
+        # While the same feet stand, a feasible target stays feasible. Feet that follow the ground deviate from the
+        # prediction: for these, the target is examined again at each look.
         stays = not self._looks() if state.felt else self._target.tolist() == self._command
         if not stays or command != self._command or not all(map(is_, stance, self._stance)):
             self._command, self._stance, self._target = command, stance, self._governed(request, command)
@@ -51,7 +51,7 @@ class GovernorLimiter:
 
     def _governed(self, request: TwistRequest, command: list[float]) -> Float[np.ndarray, "3"]:
         """Return the twist to follow."""
-        # In steady walking nothing changes; before, feet may be put down where the target leaves them no margin.
+        # In steady walking nothing changes; before that, feet may be put down where the target leaves them no margin.
         if command == request.target.tolist() and self._is_steady(request, command):
             return request.target
         transitions, state = self._transitions, request.state
@@ -59,7 +59,7 @@ class GovernorLimiter:
         return prediction.governed_twist(request.target, np.array(command), transitions.bounds)
 
     def _is_steady(self, request: TwistRequest, twist: list[float]) -> bool:
-        """Return whether the robot walks at the twist and at its cycle time."""
+        """Return whether the robot walks steadily: at the twist, and at the cycle time to reach."""
         value, transitions = request.state.twist.value.tolist(), self._transitions
         difference = max(abs(a - b) for a, b in zip(value, twist, strict=True))
         steady = not transitions.changes_gait and transitions.timing.frequency == transitions.frequency
@@ -67,6 +67,6 @@ class GovernorLimiter:
         return steady and not (request.state.felt and self._is_behind(request.state))
 
     def _is_behind(self, state: GaitState) -> bool:
-        """Return whether a foot that stands is outside its polygon: one that has landed short of its foothold."""
+        """Return whether a standing foot is outside its polygon, as after landing short of its foothold."""
         margins = polygon_margin(self._transitions.bounds, state.in_heading(state.foot))
         return bool((margins < 0)[state.down].any())

@@ -1,4 +1,4 @@
-"""Stopped body: refuses a twist towards what the body pushes against, by the measured torques of the coxa joints."""
+"""Stopped body: finds by the coxa torques that the body pushes against an obstacle, and refuses twists towards it."""
 
 from __future__ import annotations
 
@@ -15,18 +15,18 @@ from tarsus.robot.robot import Robot
 
 __all__ = ["StoppedBody"]
 
-# Push over the weight from which on the body is stopped, the time over which it is averaged, and how long it lasts [s].
-# In physics it is 0.13 at most on rough ground; where the body meets a block that it gets over, it lasts for up to 3 s.
+# Push from which the body counts as stopped, over the weight; time over which the push is averaged, and how long it has
+# to last [s]. In physics it is 0.13 at most on rough ground; at a block that the body gets over, it lasts up to 3 s.
 _STOPPED, _TIME, _LASTS = 0.15, 1.0, 3.5
-# Joint angles of legs that do not count [rad].
+# Joint angles that stand in for those of legs without measured ones, which do not count [rad].
 _ANY = (0.0, 0.0, 0.0)
 
 
 class StoppedBody:
-    """Finds obstacles that stop the body, which no foot feels, and refuses the way towards them.
+    """Finds obstacles that stop the body without any foot feeling them, and refuses twists towards them.
 
-    The ground pushes the robot up only, against gravity, unless something else holds it. What the standing feet push
-    across their legs with follows from the torques of the coxa joints.
+    Unless something else holds the robot, the forces of the ground on its feet only balance gravity. The force of each
+    standing foot across its leg follows from the torque of the coxa joint.
 
     Parameters
     ----------
@@ -36,7 +36,7 @@ class StoppedBody:
     Attributes
     ----------
     push : float
-        What the robot pushes with on its way, over its weight.
+        Mean force with which the robot pushes in its direction of travel, over its weight.
     """
 
     def __init__(self, robot: Robot) -> None:
@@ -46,7 +46,7 @@ class StoppedBody:
         self._solver = ScalarSolver(robot)
 
     def step(self, measured: ValidReadings, bears: Sequence[int], velocity: complex, dt: float, *, yaw: float) -> None:
-        """Take in joint angles and torques.
+        """Update the push from measured joint angles and torques.
 
         Parameters
         ----------
@@ -57,7 +57,7 @@ class StoppedBody:
         velocity, dt : complex, float
             Commanded velocity of the body in the heading frame [m/s]; time since the last tick [s].
         yaw : float
-            Of the body in the heading frame [rad].
+            Yaw of the body in the heading frame [rad].
         """
         push, angles, torques = 0.0, measured.joint_angles, measured.torques
         roll, pitch = measured.attitude or (0.0, 0.0)
@@ -76,7 +76,7 @@ class StoppedBody:
             self._way, self.push, self._time = velocity / (abs(velocity) or 1.0), 0.0, 0.0
 
     def limit(self, request: TwistRequest, grant: TwistGrant) -> TwistGrant:
-        """Return the grant, without a twist towards what stops the body; any other one is granted, and ends that."""
+        """Return the grant, with no twist towards what stops the body; a twist elsewhere is granted and ends this."""
         velocity = complex(*request.twist[:2])
         if leads_towards(velocity, self._way):
             return grant.at_most(0.0, Limitation(kind=LimitationKind.GROUND, cause=self._cause))

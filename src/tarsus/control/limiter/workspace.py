@@ -18,7 +18,7 @@ from tarsus.gait.stance.velocity_limits import VelocityLimits
 __all__ = ["WorkspaceLimiter", "top_speed"]
 
 _CAUSE, _ROUGH = "workspace and joint speed at this cycle time", "the ground is rough"
-# Part of the longest stroke that longer cycles use.
+# Fraction of the longest stroke that lengthened cycles may use.
 _SPARE = 0.95
 
 
@@ -32,7 +32,7 @@ class WorkspaceLimiter:
     names, transitions : sequence of str, TransitionExecutor
         The names of the legs; the stance and its transitions, whose cycles get longer on rough ground.
     adapted : callable
-        Returns the greatest cycle time and speed on the present ground, over those on even ground.
+        Returns the greatest cycle time and the greatest speed on the present ground, over those on even ground.
     """
 
     def __init__(
@@ -43,7 +43,7 @@ class WorkspaceLimiter:
         self._fraction, self._short = 1.0, list[Limitation]()
 
     def limit(self, request: TwistRequest, grant: TwistGrant) -> TwistGrant:
-        """Return the grant for at most the fraction that is sustainable."""
+        """Return the grant, limited to the sustainable fraction."""
         transitions = self._transitions
         frequency = min(transitions.timing.frequency, transitions.current.timing.frequency)
         longest, speed = self._adapted()
@@ -53,7 +53,7 @@ class WorkspaceLimiter:
             self._key, (fraction, cause) = key, self._largest(request.twist, frequency, most)
             walks = any(request.twist)
             fastest, longest = (top_speed(transitions, request.twist), longest) if walks else (1.0, 1.0)
-            # Cycles get no longer than strokes at that speed allow.
+            # Cycles get no longer than the strokes at this speed allow.
             transitions.lengthened = min(max(_SPARE * max(fastest, 1 / speed), 1.0), longest)
             if speed < 1 and speed * fastest < fraction:
                 fraction, cause = speed * fastest, Cause(_ROUGH)
@@ -62,7 +62,7 @@ class WorkspaceLimiter:
         return grant.at_most(self._fraction, *self._short)
 
     def _largest(self, twist: tuple[float, ...], frequency: float, most: float) -> tuple[float, Cause]:
-        """Return the largest sustainable fraction, up to a greatest one, and what limits it."""
+        """Return the largest sustainable fraction, `most` at most, and what limits it."""
         fraction, leg = most, 0
         for transition, limits in self._transitions.stances:
             duty_factor = transition.parameters.gait.duty_factor
@@ -90,8 +90,8 @@ def top_speed(transitions: TransitionExecutor, direction: Sequence[float]) -> fl
 
 @functools.lru_cache(maxsize=64)
 def _longest_stance(limits: VelocityLimits, twist: tuple[float, ...], duty_factor: float) -> tuple[float, int]:
-    """Return for how long stances of a steady walk may last [s], and the leg that limits it.
+    """Return how long the stances of a steady walk may last [s], and the leg that limits this.
 
-    The speed at which the feet reach the ends of their strokes is inverse to it: it is found once for all cycle times.
+    This duration over the actual one is the sustainable multiple of the twist: it is found once for all cycle times.
     """
     return limits.feasible_fraction(np.array(twist), stance_time=1.0, duty_factor=duty_factor)
