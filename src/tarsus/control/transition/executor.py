@@ -32,19 +32,19 @@ _ROUNDING = 1e-9  # of a distance [m]
 
 
 class TransitionExecutor:
-    """Begins stance transitions as soon as no foot leaves its workspace by them, and completes them.
+    """Begins stance transitions as soon as no foot leaves its workspace because of them, and completes them.
 
     Parameters
     ----------
     initial, foot_targets : StanceTransition, FootTargets
         The stance at the start; the legs that are taken out of the gait.
     scale : float
-        By how much lengths are smaller than given, on short legs, 0 to 1.
+        Factor by which lengths are smaller than given, on short legs, 0 to 1.
 
     Attributes
     ----------
     scheduler : TransitionScheduler
-        What is commanded, and what of it is planned.
+        What is commanded besides the twist, and the transition that is planned for it.
     footholds : FootholdTransfer
         Workspace and rest foothold of each foot.
     pose : PoseController
@@ -54,7 +54,7 @@ class TransitionExecutor:
     current : StanceTransition
         The transition that was begun last.
     lengthened : float
-        Cycle time over the planned one.
+        Cycle time to reach, over the planned one.
     """
 
     def __init__(self, initial: StanceTransition, foot_targets: FootTargets, *, scale: float = 1.0) -> None:
@@ -63,15 +63,15 @@ class TransitionExecutor:
         self.timing = initial.timing
         self.current, self.lengthened = initial, 1.0
         self._foot_targets, self._scale = foot_targets, scale
-        # The transition for which all feet touch down, as another gait begins by it, and the leg that lifts first then;
-        # the transition for which they step to new rest footholds.
+        # The transition to another gait, before which all feet touch down, and the leg that lifts first in it; the
+        # transition for which feet are stepping to new rest footholds.
         self._next: StanceTransition | None = None
         self._first_leg = 0
         self._active: StanceTransition | None = None
 
     @property
     def stances(self) -> list[tuple[StanceTransition, VelocityLimits]]:
-        """Transitions whose limits hold: the present one, and one that is planned or for which feet land or step."""
+        """Transitions whose limits apply: the present one, and one that is planned or for which feet land or step."""
         pending = self.scheduler.planned or self._next or self._active
         return [(self.current, self.footholds.limits), *([(pending, pending.path_limits)] if pending else [])]
 
@@ -99,13 +99,13 @@ class TransitionExecutor:
     @property
     def body_shift(self) -> Complex[np.ndarray, "7"] | None:
         """Coefficients of the body shift, array, shape (7,) [m]; None for a gait without one."""
-        # As long as only the feet step, the body is where it was.
+        # While the feet step to new rest footholds, the body keeps its posture.
         steps = self._active is not None
         return (self.current.stepping_limits if steps else self.current.final_limits).shift
 
     @property
     def changes_gait(self) -> bool:
-        """Whether all feet touch down for another gait."""
+        """Whether all feet are touching down before another gait starts."""
         return self._next is not None
 
     @property
@@ -115,7 +115,7 @@ class TransitionExecutor:
 
     @property
     def bandwidth(self) -> float:
-        """Bandwidth with which the twist follows its target, that of the next gait once it is decided [rad/s]."""
+        """Bandwidth with which the twist follows its target; that of the next gait once feet land for it [rad/s]."""
         return (self.timing if self._next is None else self._next.timing).bandwidth
 
     @property
@@ -124,7 +124,7 @@ class TransitionExecutor:
         return self._foot_targets.without_bounds(self.footholds.shifted(self.footholds.bounds))
 
     def stance_intervals(self, state: GaitState) -> tuple[Float[np.ndarray, "legs"], Float[np.ndarray, "legs"]]:
-        """Return from when until when each foot stands where it is, or where it will touch down: shape (legs,) [s]."""
+        """Return start and end of each foot's stance where it is, or where it will touch down: shape (legs,) [s]."""
         if self._next is None:
             return self.timing.stance_intervals(state)
         begins = self.timing.time_to_touchdown(state)
@@ -142,10 +142,11 @@ class TransitionExecutor:
         Parameters
         ----------
         state, stands : GaitState, bool
-            The gait state of a robot that hardly moves; whether feet would step for this alone.
+            The gait state of a robot that hardly moves; whether it stands: more is tolerated then, as feet would step
+            for this alone.
         """
         rest = final_footholds(state, rest=self.footholds.rest, bandwidth=self.bandwidth)
-        assert rest is not None  # only of a robot that is fast
+        assert rest is not None  # None only for a robot that is fast
         off = np.abs(state.foot - rest)
         off[list(self.current.parameters.excluded)] = 0.0
         near = bool(off.max() <= stance_tolerance(state, scale=self._scale, stands=stands))
@@ -199,13 +200,13 @@ class TransitionExecutor:
         return state
 
     def _try_to_change_gait(self, planned: StanceTransition, now: TickState) -> None:
-        """Let all feet touch down, if they may stand for so long; the leg that suits best then lifts first."""
+        """Let all feet touch down if they may stand until the new gait lifts them; the leg best suited lifts first."""
         ends = self.timing.time_to_touchdown(now.gait).max() + planned.lift_delays
         bounds = self._foot_targets.without_bounds(self.footholds.bounds_with(planned))
         bounds = self.footholds.shifted(np.minimum(bounds, planned.final_limits.bounds))
         prediction = FootPrediction.of(now.gait, np.zeros_like(ends), ends, planned.timing.bandwidth)
         over = prediction.excess(now.twist[None], bounds).max(axis=(1, 2, 3, 4))
-        # Symmetric legs suit equally well but for rounding; the first of them lifts, on any machine.
+        # Symmetric legs differ only by rounding: the first of them is taken, so that all machines choose the same one.
         first = int((over <= over.min() + _ROUNDING).argmax())
         if over[first] <= POSITION_TOLERANCE:
             self._next, self._first_leg, self.scheduler.planned = planned, first, None
@@ -238,7 +239,7 @@ class TransitionExecutor:
         self._foot_targets.set_legs(excluded, state)
 
     def _start_gait(self, planned: StanceTransition, first: int, state: GaitState) -> GaitState:
-        """Start a gait; every foot is down."""
+        """Start a gait while every foot is down."""
         self._begin(planned, state)
         self.timing = planned.timing
         return self.timing.with_first_lift(state, first)
@@ -246,7 +247,7 @@ class TransitionExecutor:
     # After a tick.
 
     def finish(self, state: GaitState, dt: float) -> GaitState:
-        """Complete what is complete after a tick.
+        """Complete what has come to its end with a tick.
 
         Parameters
         ----------

@@ -20,11 +20,11 @@ if TYPE_CHECKING:
 
 __all__ = ["balanced_fraction", "first_increment", "reachable_fraction"]
 
-# The whole path is sampled at so many points; the interval that fails is then halved: to 1/2048 of the path.
+# Number of samples of the whole path; how often the interval that fails is then halved, down to 1/2048 of the path.
 _SAMPLES, _HALVINGS = 16, 7
 # How many stances are examined in one tick.
 _PER_TICK = 2
-# How far the rest footholds move in one transition at most [m], and the fractions of a step that are tried.
+# Farthest that the rest footholds move in one transition [m]; fractions of the feasible path that are tried for it.
 _LONGEST_STEP, _SHORTER = 0.03, np.append(np.arange(16, 0, -1) / 16, (1 / 32, 1 / 64))
 # Rest footholds closer than this are the same [m].
 _SAME = 1e-9
@@ -60,7 +60,7 @@ def reachable_fraction(robot: Robot, start: StanceTarget, end: StanceTarget) -> 
         if works(1.0):
             return 1.0, None
         yield
-    # The first sample that fails; where all are in reach, it is the end that has no room.
+    # Search below the first sample that fails; where all are in reach, it is the end that has no room.
     feasible, infeasible = yield from _bracket(works, float(fractions[fails.argmax()]) if fails.any() else 1.0)
     yield
     return feasible, reach_cause(robot, start.towards(end, infeasible).stand)
@@ -92,7 +92,7 @@ def _bracket(works: Callable[[float], bool], infeasible: float) -> Incremental[t
     """Find two fractions close to each other: one that is feasible, or 0, and a greater one that is not."""
     feasible = max(0.0, infeasible - 1 / _SAMPLES)
     while feasible > 0 and not works(feasible):
-        # The interval below, twice as wide.
+        # Go on with the interval below, of the same width.
         feasible, infeasible = max(0.0, 2 * feasible - infeasible), feasible
         yield
     yield
@@ -108,7 +108,7 @@ def _bracket(works: Callable[[float], bool], infeasible: float) -> Incremental[t
 
 
 def first_increment(robot: Robot, start: StanceTarget, end: StanceTarget, fraction: float) -> float:
-    """Return how much of a path one transition can cover: in the present posture the feet must reach their new places.
+    """Return the fraction of a path that one transition covers: the feet must reach it in the present posture.
 
     Parameters
     ----------
@@ -127,7 +127,7 @@ def first_increment(robot: Robot, start: StanceTarget, end: StanceTarget, fracti
 
 
 def _reach_margin(robot: Robot, stances: list[StanceTarget]) -> Float[np.ndarray, "n legs"]:
-    """Return the margin of each leg at its rest foothold, on the ground and lifted; negative out of reach."""
+    """Return each leg's least joint margin at its rest foothold, on the ground and lifted; negative out of reach."""
     rows, rest = np.array([p.posture for p in stances]), np.array([p.rest for p in stances])
     rotation = np.array([rotation_rows(*row) for row in rows[:, 3:SWING_HEIGHT].tolist()])
     swing_height = rows[:, SWING_HEIGHT:]

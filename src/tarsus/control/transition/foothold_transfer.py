@@ -36,7 +36,7 @@ class FootholdTransfer:
     new_rest : complex array, shape (legs,)
         The rest footholds once all feet are transferred [m].
     placement_bounds : array, shape (legs, 16)
-        Distance from its rest foothold at which each foot may be put down next, along each side's normal [m].
+        Greatest distance from its rest foothold at which each foot may be put down next, along each side's normal [m].
     placement_radii : list of float
         The least of these distances of each foot [m].
     transferred : array of bool, shape (legs,)
@@ -60,7 +60,7 @@ class FootholdTransfer:
         self.rest: Complex[np.ndarray, "legs"] = self._level_rest + self._shift
 
     def shift(self, shift: Complex[np.ndarray, "legs"]) -> None:
-        """Shift rest footholds and polygons, as a slope asks for; stances are planned without it [m]."""
+        """Shift rest footholds and polygons as the ground requires; stances are planned without this shift [m]."""
         if shift is not self._shift:
             self._shift, self.rest = shift, self._level_rest + shift
             self._sides_shift = (NORMALS_CONJUGATE * shift[:, None]).real
@@ -70,7 +70,7 @@ class FootholdTransfer:
         return np.asarray(bounds + self._sides_shift)
 
     def bounds_with(self, transition: StanceTransition) -> Float[np.ndarray, "legs 16"]:
-        """Return the sides with which the feet would start to transfer, if the transition began [m]."""
+        """Return the polygons' sides with which the feet would start to transfer if the transition began now [m]."""
         moved = self._moved(transition)
         return np.where(moved[:, None], self.bounds, np.minimum(self.bounds, transition.stepping_limits.bounds))
 
@@ -78,12 +78,12 @@ class FootholdTransfer:
         return np.asarray(np.abs(transition.rest - self.new_rest) > POSITION_TOLERANCE)
 
     def begin(self, transition: StanceTransition, down: Bool[np.ndarray, "legs"]) -> None:
-        """Begin to transfer the feet to new rest footholds; `down` are those on the ground."""
+        """Begin to transfer the feet to new rest footholds; `down` tells which feet are on the ground."""
         self.limits = self.limits.intersection(transition.stepping_limits)
         moved = self._moved(transition)
         self.bounds = self.bounds_with(transition)
         self.transferred = ~moved
-        # A foot in the air lands at the foothold that it swings to; its next step is the one that counts.
+        # A foot in the air still lands at the foothold that it swings to; only its next step transfers it.
         self._lands_at_old = moved & ~down
         self._level_rest = np.where(self._lands_at_old, self._level_rest, transition.rest)
         self._next_bounds, self.new_rest = transition.stepping_limits.bounds, transition.rest
@@ -101,12 +101,12 @@ class FootholdTransfer:
         self._update_placement()
 
     def restrict(self, limits: VelocityLimits) -> None:
-        """Keep within further limits too."""
+        """Restrict the feet to further limits as well."""
         self.limits = self.limits.intersection(limits)
         self.bounds = self._next_bounds = np.minimum(self.bounds, limits.bounds)
         self._update_placement()
 
     def complete(self, limits: VelocityLimits) -> None:
-        """Change over to the limits of the stance that is reached."""
+        """Switch to the limits of the stance that has been reached."""
         self.limits, self.bounds, self._next_bounds = limits, limits.bounds, limits.bounds
         self._update_placement()

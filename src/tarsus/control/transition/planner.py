@@ -27,7 +27,7 @@ __all__ = ["TIPPING", "TransitionPlanner"]
 TIPPING = Cause("the robot would tip over")
 _UNREACHABLE = Cause("no leg reaches the ground at this height")
 _LEAST_FRACTION = 0.02
-# The least move of the body that is made for its own [m, rad]: every one brings the commanded posture closer.
+# Least motion of the body for a transition without steps [m, rad], so that each brings the commanded posture closer.
 _LEAST_MOVE = 1e-3
 # Differences below this are rounding.
 _SAME = 1e-9
@@ -56,7 +56,7 @@ class TransitionPlanner:
         Parameters
         ----------
         setup, stance_width : WalkSetup, float
-            Gait and heights; distance that the feet rest farther out than by default [m].
+            Gait and heights; distance by which the feet rest farther out than by default [m].
         cycle_time : float or None
             Duration of a cycle [s]; None for the one with the highest top speed.
 
@@ -65,7 +65,7 @@ class TransitionPlanner:
         InputError
             If stance width or cycle time are not finite, or out of their range.
         UnreachableError
-            If the robot can't stand and step so.
+            If the robot can't stand and step in this stance.
         """
         stance_width = require_float("stance_width", stance_width, finite=True)
         if cycle_time is not None:
@@ -144,7 +144,7 @@ class TransitionPlanner:
     def _increment(
         self, parameters: WalkParameters, start: StanceTarget, goal: StanceTarget, limits: VelocityLimits
     ) -> Incremental[StanceTransition | Cause]:
-        """Find a way to a stance, with its limits there; or else one on which only the body moves."""
+        """Find a way to a stance, whose limits are `limits`; failing that, one on which only the body moves."""
         if not limits.balanced:
             return TIPPING
         if not limits.feasible and any(parameters.sway):
@@ -165,7 +165,7 @@ class TransitionPlanner:
     def _way(
         self, parameters: WalkParameters, start: StanceTarget, goal: StanceTarget, limits: VelocityLimits
     ) -> Incremental[StanceTransition | Cause]:
-        """Find cycle time and limits on the way to a stance; `limits` are those in it."""
+        """Find cycle time and limits on the way to a stance; `limits` are those in that stance."""
         gait = parameters.gait
         timing = yield from cycle_timing(
             self.robot, gait, goal.stand, limits, self.joint_limits, cycle_time=parameters.cycle_time
@@ -210,7 +210,7 @@ class TransitionPlanner:
     def _shortfalls(
         self, parameters: WalkParameters, end: StanceTarget, reached: StanceTarget, cause: Cause
     ) -> list[Limitation]:
-        """Return what of the commanded stance, at the end, is not feasible."""
+        """Return what is not feasible of the commanded stance, `end`."""
         mount = self.robot.geometry.mount_x + 1j * self.robot.geometry.mount_y
         missing = float((np.abs(end.rest - mount) - np.abs(reached.rest - mount)).mean())
         width = parameters.stance_width - missing

@@ -43,16 +43,16 @@ class TransitionScheduler:
         self.current = initial
         self.requested = initial.parameters
         self.planned: StanceTransition | None = None
-        # Parameters that are not feasible at all, and what that limits.
+        # Parameters that are not feasible at all, and the limitations to report for each.
         self._rejections: dict[WalkParameters, list[Limitation]] = {}
         self._job: Incremental[None] | None = None
         # Parameters for which nothing is left to plan.
         self._done: WalkParameters | None = None
-        # Whether the robot stands, or will stand, on the way from the current parameters to others.
+        # Whether the robot's stance is, or will be, partway from the current parameters to others.
         self._between = False
-        # What the limitations of the current transition are about.
+        # The parameters to which the limitations of the current transition refer.
         self._planned_for = initial.parameters
-        # What is limited besides by the current transition; kept until planning has come to a new result.
+        # Limitations besides those of the current transition; kept until planning has come to a new result.
         self._shortfalls: tuple[Limitation, ...] = ()
 
     @property
@@ -116,11 +116,11 @@ class TransitionScheduler:
                 self._finish_request()
 
     def _planning(self, plan: PlanTransition, asked: WalkParameters, stay: bool) -> Incremental[None]:
-        """Plan the transition to parameters, and take note of it or of why these are rejected."""
+        """Plan the transition to parameters, and take note of it, or of why the parameters are rejected."""
         found = yield from plan(asked, stay)
         if isinstance(found, StanceTransition):
             self.planned = found
-        # What is no longer commanded by now is not rejected.
+        # Parameters that are no longer commanded by now are not rejected.
         elif asked == self._next_parameters()[0]:
             posture = None if stay else self.current.posture
             self._rejections[asked] = asked.rejected(self.current.parameters, posture, found)
@@ -142,32 +142,32 @@ class TransitionScheduler:
         self.planned, self._rejections, self._done = None, {}, None
 
     def _finish_request(self) -> None:
-        """Take note that all that is feasible of the commanded parameters is met."""
+        """Take note that everything feasible of the commanded parameters is met."""
         self._done, current = self.requested, self.current.parameters
         self._shortfalls = tuple(chain.from_iterable(self._rejections.values()))
-        # Standing otherwise has to wait until all legs are back in the gait.
+        # Any change of how the robot stands has to wait until all legs are back in the gait.
         deferred = dataclasses.replace(self.requested.stepping_like(current), correction=current.correction)
         if current.excluded and self._is_open(deferred, False):
             self._shortfalls += tuple(deferred.rejected(current, self.current.posture, _DEFERRED))
 
     def _next_parameters(self) -> tuple[WalkParameters, bool]:
-        """Return what to change first, how the robot steps or how it stands; and whether its posture stays."""
+        """Return parameters with what to change first, how the robot steps or stands; and whether its posture stays."""
         current, requested = self.current.parameters, self.requested
         order = [(current.stepping_like(requested), True), (requested.stepping_like(current), False)]
         if set(current.excluded) - set(requested.excluded):
-            # Legs come back in the gait that they left, and others may leave only once they are down.
+            # Legs return to the same gait that they left; others may leave it only once these are down.
             staying = tuple(leg for leg in current.excluded if leg in requested.excluded)
             order = [(dataclasses.replace(current, excluded=staying), True)]
         elif current.excluded:
-            # From another posture, the feet of these legs may be out of reach where they are.
+            # In another posture, the feet of these legs might be out of reach where they are.
             order = order[:1]
         elif requested.excluded:
-            # Before a leg leaves the gait, the body shifts over the others.
+            # Before a leg leaves the gait, the body shifts over the feet of the others.
             order.reverse()
         return next((each for each in order if self._is_open(*each)), (current, True))
 
     def _is_open(self, parameters: WalkParameters, stay: bool) -> bool:
-        """Return whether parameters are neither met nor rejected; their posture is not where that stays."""
-        # Halfway to others, the current parameters have to be met anew.
+        """Return whether parameters are neither met nor rejected; where the posture stays, it need not be met."""
+        # With the stance partway to others, the current parameters have to be met anew.
         met = parameters == self.current.parameters and (stay or not self._between)
         return not met and parameters not in self._rejections

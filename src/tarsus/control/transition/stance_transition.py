@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 __all__ = ["StanceTarget", "StanceTransition", "WalkParameters", "target_stance"]
 
-# Fractions of a change of height that are tried where the whole of it has no foothold.
+# Fractions of a change of height that are tried where the whole change leaves a foot without a foothold.
 _FRACTIONS = np.arange(7, 0, -1) / 8
 # Differences below this are rounding [m, rad].
 _TOLERANCE = 1e-6
@@ -39,11 +39,11 @@ class WalkParameters:
     body_height, swing_height : float
         Height of the body's origin over the ground, and of a swinging foot over its foothold [m].
     stance_width : float
-        Distance that the feet rest farther out than by default [m].
+        Distance by which the feet rest farther out than by default [m].
     cycle_time : float or None
         Duration of a cycle [s]; None for the one with the highest top speed.
     body : tuple of float
-        Body pose against level at the body height: x, y, z [m], roll, pitch, yaw [rad].
+        Body pose relative to a level body at the body height: x, y, z [m], roll, pitch, yaw [rad].
     sway : tuple of float
         Amplitudes of the body's sway, axes as in `body`.
     correction : tuple of float
@@ -73,14 +73,15 @@ class WalkParameters:
         Parameters
         ----------
         posture, cause : array, shape (7,), and Cause
-            The posture, with the correction of the parameters; why these are not met.
+            The posture that is met, with the correction of the parameters; why these are not met.
         stance_width : float
-            The stance width that is met; of interest only where everything else is met [m].
+            The stance width that is met [m]; it is reported only where everything else is met.
         """
         gap = np.array([*self.corrected_body, self.swing_height]) - posture
         gap[2] += self.body_height
         found = []
-        # The height of the body's origin is commanded twice: a gap that the body pose alone can't make is the height's.
+        # Body height and body pose both command the height of the body's origin: a gap greater than the pose's part
+        # counts as one of the body height.
         if _TOLERANCE + abs(self.body[2]) < abs(gap[2]):
             asked = self.body_height
             found.append(cause.limitation(LimitationKind.BODY_HEIGHT, asked=asked, granted=asked - float(gap[2])))
@@ -95,7 +96,7 @@ class WalkParameters:
         return found
 
     def _body_shortfalls(self, gap: Float[np.ndarray, "6"], cause: Cause) -> list[Limitation]:
-        """Return what of the body pose is missing; where only its correction is, that."""
+        """Return what is missing of the body pose, or of its correction where only that is missing."""
         missing = [axis for axis in range(SWING_HEIGHT) if abs(gap[axis]) > _TOLERANCE]
         commanded = [axis for axis in missing if self.body[axis]]
         if commanded:
@@ -112,7 +113,7 @@ class WalkParameters:
         Parameters
         ----------
         now : WalkParameters
-            What is in force.
+            The parameters in force.
         posture : array, shape (7,), or None
             The posture that is in force; None where it would have stayed.
         cause : Cause
@@ -134,7 +135,7 @@ class WalkParameters:
         return found + self.shortfalls(corrected, cause, stance_width=now.stance_width)
 
     def stepping_like(self, others: WalkParameters) -> WalkParameters:
-        """Return how to stand like this, and step like others: their gait, cycle time, and legs out of the gait."""
+        """Return these parameters with the steps of others: their gait, cycle time, and legs out of the gait."""
         return replace(self, gait=others.gait, cycle_time=others.cycle_time, excluded=others.excluded)
 
 
@@ -175,12 +176,12 @@ class StanceTarget(NamedTuple):
 
     @property
     def stand(self) -> StanceGeometry:
-        """The body and the feet at rest."""
+        """Geometry of the body with the feet at their rest footholds."""
         return stance_geometry_of(self.posture, self.rest)
 
 
 def target_stance(robot: Robot, parameters: WalkParameters, present: StanceTarget) -> StanceTarget | None:
-    """Return posture and rest footholds; for a height without a foothold, of the nearest height that has them.
+    """Return the posture and rest footholds asked for, or those at the nearest height that has footholds.
 
     None where no height between the present and the commanded one has footholds.
 
@@ -223,7 +224,7 @@ class StanceTransition:
     stepping_limits, path_limits, final_limits : VelocityLimits
         The limits while the feet step to their new rest footholds, while the body moves, and in the new stance.
     complete : bool
-        Whether it meets as much of that as is feasible; if not, a further transition follows.
+        Whether it meets as much of the parameters as is feasible; if not, a further transition follows.
     keeps_posture : bool
         Whether only the steps change.
     limitations : tuple of Limitation
@@ -248,7 +249,7 @@ class StanceTransition:
 
     @cached_property
     def lift_delays(self) -> Float[np.ndarray, "legs legs"]:
-        """How long each foot stands as its gait starts with all feet down, by the leg that lifts first: rows [s]."""
+        """How long each foot stands as its gait starts with all feet down [s]; a row for each leg that lifts first."""
         duty_factor, offsets = self.parameters.gait.duty_factor, np.asarray(self.parameters.gait.offsets)
         over = (stance_overhang(duty_factor) - 0.5) * duty_factor
         return np.asarray(((offsets - offsets[:, None]) % 1 + over) * self.cycle_timing.cycle_time)
