@@ -1,4 +1,4 @@
-"""The feet of a walk that feels the ground: their state, and what they are given for a tick."""
+"""The feet of a walk that feels the ground: their state, and their inputs for a tick."""
 
 from __future__ import annotations
 
@@ -13,25 +13,26 @@ __all__ = ["ROUNDING", "FeltFoot", "FeltInputs", "GroundUnder", "travel_share"]
 ROUNDING = 1e-9
 """Differences of heights below this are rounding [m]."""
 
-# Fraction of the swing in which a foot travels, up to half the longest stroke and with the longest one; at least.
+# Fraction of the swing in which a foot travels: for strokes up to half the longest, for the longest, and the least.
 _SLOW_TRAVEL, _FAST_TRAVEL, _LEAST_TRAVEL = 0.75, 0.92, 0.5
 
 
 class FeltFoot(NamedTuple):
-    """What a foot of a walk that feels the ground does besides its step; by default it stands still.
+    """Motion, besides its step, of a foot that feels the ground; by default it stands still.
 
     Attributes
     ----------
     speed, acceleration : float
         Upward speed in G [m/s]; upward acceleration of a rising foot [m/s^2].
     top, top_phase : float
-        Height in G to which a swinging foot rises [m], NaN on the ground; swing phase from which on it goes down.
+        Height in G to which a swinging foot rises [m], NaN once it stands; swing phase from which it goes down.
     slide : complex
-        Velocity in G of a foot that has landed before the end of its way, which decays [m/s].
+        Decaying velocity in G of a foot that has landed before the end of its way [m/s].
     drawn_back : complex or None
-        Where in G a foot that has met an obstacle is drawn back to while it rises [m]; None without one.
+        Place in G to which a foot is drawn back from an obstacle, or where it stays before steep ground, while it
+        rises [m]; None without either.
     bow : complex
-        How far a swinging foot swings out on its way, so that its leg reaches the top, in G [m].
+        Sideways offset of a swinging foot halfway on its way, so that its leg reaches the top, in G [m].
     """
 
     speed: float = 0.0
@@ -44,24 +45,24 @@ class FeltFoot(NamedTuple):
 
 
 class GroundUnder(NamedTuple):
-    """The ground under a foot in the air or without contact, and how far down and up the foot goes: heights in G [m].
+    """The ground under a foot in the air or without contact, and how far down and up the foot may go; heights in G [m].
 
     Attributes
     ----------
     expected : float
-        Where the ground is expected under the foothold.
+        Height at which the ground is expected under the foothold.
     lowest, highest : float
-        Below and above which the foot does not go on a straight way.
+        Least and greatest height of the foot on a straight way.
     way : float
-        How high the ground is at most on the way there.
+        Greatest height of the known ground on the way to the foothold; minus infinity where none is known.
     steep : bool
-        Whether it rises so soon on the way that the foot has to rise before it travels.
+        Whether the ground rises so soon on the way that the foot has to rise before it travels.
     place : complex or None
-        Where in G a foot steps that has found no ground, or tries to get past an obstacle [m].
+        Place in G to which a foot steps that has found no ground or tries to get past an obstacle [m]; None without.
     clears : bool
-        Whether a foot that has met an obstacle stays up until it is past that.
+        Whether a foot that has met an obstacle stays up until it is past the obstacle.
     bow, bowed : complex, float
-        How far the foot may swing out on its way, in G [m], and above which height it does not go then.
+        Sideways offset by which the foot may swing out on its way, in G [m]; its greatest height when it does.
     """
 
     expected: float
@@ -76,7 +77,7 @@ class GroundUnder(NamedTuple):
 
 
 class FeltInputs(NamedTuple):
-    """What a walk that feels the ground is given for a tick.
+    """Inputs of a walk that feels the ground, for one tick.
 
     Attributes
     ----------
@@ -91,31 +92,33 @@ class FeltInputs(NamedTuple):
     rates : PostureRates
         How the body is to move over the standing feet.
     drift : complex
-        Velocity of the standing feet against the body's, in the heading frame, that makes up for lost way [m/s].
+        Velocity of the body relative to the standing feet, in the heading frame, that makes up for lost way, and keeps
+        a body that levels from moving on towards an edge [m/s]; the feet move by its negative.
     yaw_rate : float
-        How fast the body turns over the standing feet, to make up for lost heading [rad/s].
+        Turning rate of the body over the standing feet that makes up for lost heading [rad/s].
     back : complex
-        Velocity of the body over all feet, in the heading frame, by which it backs off an edge [m/s].
+        Velocity of the body over all feet, in the heading frame, by which it backs off an edge, or shifts over feet
+        that do not hold it yet [m/s].
     travel : float
-        Fraction of its swing in which a foot travels: in the rest it goes straight down.
+        Fraction of its swing in which a foot travels; for the rest it goes straight down.
     pace : float
         Rate of the steps and of the twist, 0 to 1.
     swing_height : float
-        How high a foot rises over the higher of lift-off and expected ground [m].
+        How high a foot rises over the higher of its lift-off height and the expected ground [m].
     lowering : float
-        Greatest speed of a foot that goes down [m/s].
+        Greatest downward speed of a foot [m/s].
     late : float
-        Time from a foot's contact until that is known [s].
+        Time from a foot's contact until the contact is known [s].
     beside : mapping of int to complex
-        How far from the foothold of its step a foot is put down, by leg, in the heading frame [m].
+        Offset from the foothold of its step at which a foot is put down, by leg, in the heading frame [m].
     in_air : bool
         Whether the robot is in the air: all feet go to one height, to be put down together.
     scale : float
-        By how much speeds are smaller than given, on short legs, 0 to 1.
+        Factor by which lengths and speeds are smaller than given, on short legs, 0 to 1.
     redundant : bool
         Whether more than three feet stand at any time of the gait.
     rough, slow_contact : float, float
-        How rough the ground is for feet that go down; how far they slow down just over the expected ground; 0 to 1.
+        How rough the ground is for feet that go down; how much they slow down just over the expected ground; 0 to 1.
     """
 
     under: list[GroundUnder | None]
@@ -142,14 +145,14 @@ class FeltInputs(NamedTuple):
 def travel_share(far: float, late: float) -> float:
     """Return the fraction of its swing in which a foot travels.
 
-    A foot whose contact is known late goes down sooner: it is not to move over the ground until then.
+    A foot whose contact is known late ends its travel sooner, so as not to slide over the ground until then.
 
     Parameters
     ----------
     far : float
         Half the longest stroke, over the greatest distance from its rest foothold at which a foot may be put down.
     late : float
-        Time from a foot's contact until that is known, over the duration of a swing.
+        Time from a foot's contact until the contact is known, over the duration of a swing.
     """
     share = _SLOW_TRAVEL + (_FAST_TRAVEL - _SLOW_TRAVEL) * max(2 * far - 1, 0.0)
     return max(share - late, _LEAST_TRAVEL)

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 __all__ = ["FootTargets", "excluded_legs"]
 
-# Greatest speed with which a foot follows its target [m/s], and the greatest bandwidth [rad/s].
+# Greatest speed [m/s] and greatest bandwidth [rad/s] with which a foot follows its target.
 _GREATEST_SPEED, _BANDWIDTH = 0.12, 5.0
 # Fractions of a path that are tested for reach.
 _TRIED = np.arange(17) / 16
@@ -106,7 +106,7 @@ class FootTargets:
     Attributes
     ----------
     limitations : list of Limitation
-        Foot targets that are out of reach or below the ground, and feet that are to move too fast.
+        Foot targets that are out of reach or below the ground, and foot velocities that are too high.
     """
 
     def __init__(self, robot: Robot) -> None:
@@ -142,7 +142,7 @@ class FootTargets:
         command : Command
             A point in it holds until the next one; a velocity for this tick.
         posture, sway : array, shape (13,), tuple of float
-            Posture of the body; amplitudes of its sway: feet go no farther than they reach wherever it sways.
+            Posture of the body; amplitudes of its sway, throughout which the feet have to reach their targets.
         dt : float
             Length of the tick [s].
         """
@@ -180,18 +180,18 @@ class FootTargets:
         self.limitations.append(why.limitation(LimitationKind.FOOT_TARGET, asked=asked, granted=granted))
 
     def _reachable(self, leg: int, end: Float[np.ndarray, "3"], postures: list[Float[np.ndarray, "7"]]) -> float:
-        """Return the fraction of a straight path to a point that a foot can follow in all of some postures."""
+        """Return the fraction of a straight path to a point that a foot can follow in all given postures."""
         geometry, start, rest = self._robot.geometry, self._motions[leg].position.value, np.zeros(self._robot.legs)
         points = (start + _TRIED[:, None] * (end - start)).T[..., None] + rest
         stances = [stance_geometry_of(posture, rest.astype(complex)) for posture in postures]
         margins = np.array([joint_margin(geometry, stance.solve(geometry, *points))[:, leg] for stance in stances])
-        # A foot that stands lower or farther out than its leg should reach may come back.
+        # A foot that starts lower or farther out than its leg should reach may come back.
         works = (margins >= np.minimum(margins[:, :1], 0.0)).all(axis=0)
         reached = np.logical_and.accumulate(works) & (margins >= 0.0).all(axis=0)
         return float(_TRIED[reached].max(initial=0.0))
 
     def apply(self, state: GaitState, time: float, *, swing_time: float) -> GaitState:
-        """Return the state with the feet taken out of the gait moved by a time, except those that are in a swing again.
+        """Return the state after a time of motion of the feet out of the gait, except of those that swing again.
 
         Parameters
         ----------
@@ -229,7 +229,7 @@ class FootTargets:
             self._motions = {leg: motion.step(time) for leg, motion in self._motions.items() if down[leg]}
 
     def without_bounds(self, bounds: Float[np.ndarray, "legs 16"]) -> Float[np.ndarray, "legs 16"]:
-        """Return the sides of the feet's polygons, infinite for the feet that do not step [m]."""
+        """Return the sides of the feet's polygons, infinite for the feet that bear no load [m]."""
         free = bounds.copy()
         free[self.legs] = np.inf
         return free

@@ -1,4 +1,4 @@
-"""Foothold prediction: a foot is placed where the body will have its rest foothold in the middle of the stance."""
+"""Foothold prediction: a foot is placed where its rest foothold will be in the middle of its next stance."""
 
 from __future__ import annotations
 
@@ -52,12 +52,12 @@ class FootholdPredictor:
     Parameters
     ----------
     now, inputs : GaitState, StepInputs
-        The state in which the twist begins to follow its target; the inputs.
+        The gait state, after which the twist is taken to settle at its present value while its rate decays; the inputs.
     """
 
     def __init__(self, now: GaitState, inputs: StepInputs) -> None:
         self._now, self._turn, self._inputs = now, cmath.exp(1j * now.yaw), inputs
-        # Position and rotation of the heading frame by the time ahead: legs that swing together ask for the same times.
+        # Position and rotation of the heading frame, by time ahead: kept, as legs that swing together ask for the same.
         self._known: dict[float, tuple[complex, complex]] = {}
 
     def foothold(self, leg: int, touchdown: float, mid_stance: float) -> complex:
@@ -74,7 +74,7 @@ class FootholdPredictor:
         position, rotation = self._body(mid_stance)
         beside = 0j if inputs.felt is None else inputs.felt.beside.get(leg, 0j)
         foothold = position + rotation * (rest + beside)
-        # While the body turns or slows down, this may be outside the bounds at touchdown.
+        # While the body turns or slows down, this foothold may be outside the bounds at touchdown.
         position, rotation = self._body(touchdown)
         out = (foothold - position) * rotation.conjugate() - rest
         if abs(out) > inputs.placement_radii[leg]:

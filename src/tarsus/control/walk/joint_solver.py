@@ -1,4 +1,4 @@
-"""Joint angles of a gait state and its feet, computed in plain numbers: the kinematics of every tick."""
+"""Joint angles and feet of a gait state, computed in plain numbers: the kinematics of every tick."""
 
 from __future__ import annotations
 
@@ -34,9 +34,9 @@ class JointSolver:
     Attributes
     ----------
     rolling : FootRolling
-        How the balls of the feet roll; at first not at all.
+        Rolling of the balls of the feet; none at first.
     deflection : DeflectionCompensation
-        What is added to the joint angles for loaded joints that yield.
+        Offsets of the joint angles that make up for the yielding of loaded joints.
     """
 
     def __init__(self, robot: Robot) -> None:
@@ -62,7 +62,8 @@ class JointSolver:
         if self.rolling.started:
             bottoms = zip(state.ground_height.tolist(), offsets, strict=True)
             standing = [height + offset - state.elevation for height, offset in bottoms]
-            # About the rest at the posture that is solved: at an earlier one, the next tick would catch up at once.
+            # Rolling is relative to rest in the posture that is solved: with an earlier one, the next tick would have
+            # to catch up at once.
             feet = self.rolling.rolled(feet, standing, (rotation, position), posture=state.posture.value)
         found: Any = self._scalar_solver.angles(feet, rotation, position)
         if found is None:
@@ -74,9 +75,9 @@ class JointSolver:
         return angles
 
     def feet(self, state: GaitState, angles: Float[np.ndarray, "legs 3"]) -> Float[np.ndarray, "legs 3"]:
-        """Return the feet in G, the centres of their balls, of a state and its joint angles [m].
+        """Return the feet in G, as the centres of their balls, for a state and its joint angles [m].
 
-        They are found by forward kinematics: where they are under load.
+        They are found by forward kinematics without the deflection's offsets: where the feet are under load.
         """
         rotation, position, _ = self._body_at(state)
         turn, origin = cmath.exp(1j * state.yaw), state.origin

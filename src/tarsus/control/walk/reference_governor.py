@@ -22,15 +22,15 @@ __all__ = ["FootPrediction"]
 
 # Rounding of a distance [m].
 _TOLERANCE = 1e-9
-# Fractions of the path to the command that are tried, and fractions of a target that is no longer feasible.
+# Fractions of the path to the command that are tried; fractions to which an infeasible present target is reduced.
 _FRACTIONS = np.array([0.0, 0.002, 0.006, 0.02, 0.06, 0.12, 0.22, 0.36, 0.55, 0.8, 1.0])[:, None]
 _REDUCTIONS = np.array([0.0, 0.05, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 0.95, 0.98, 1.0])[:, None]
-# How much farther out a foot may get that would be outside with the twist 0 as well [m].
+# How much farther outside its polygon a foot may get that would be outside even with a target of 0 [m].
 _SLACK = 0.005
 # Times within a stance at which its foot is examined, as fractions.
 _TIMES = np.array([0.0, 0.5, 1.0])[:, None]
 _NORMALS = np.stack([NORMALS.real, NORMALS.imag])
-# Added to an angle so that it can be divided by.
+# Added to an angle to avoid a division by 0 [rad].
 _NO_ANGLE = 1e-30
 
 
@@ -60,14 +60,14 @@ class FootPrediction(NamedTuple):
         ends: Float[np.ndarray, "*#batch legs"],
         bandwidth: float,
     ) -> FootPrediction:
-        """Predict for feet that stand for an interval.
+        """Predict the feet over the interval for which each one stands.
 
         Parameters
         ----------
         state : GaitState
             The gait state.
         begins, ends : array, shape (..., legs)
-            From when until when the foot stands where it is, or where it will be put down [s].
+            Start and end of the time for which each foot stands where it is, or where it will be put down [s].
         bandwidth : float
             Bandwidth with which the twist follows its target [rad/s].
         """
@@ -142,10 +142,10 @@ class FootPrediction(NamedTuple):
         over = self.excess(reduced, bounds)
         if (last := _last_feasible(over)) is not None:
             return np.asarray(reduced[last])
-        # A foot that is outside already, as one that is put down before an obstacle, may not get farther out.
+        # A foot that is outside already, such as one put down before an obstacle, may not get farther out.
         if (last := _last_feasible(self.excess(targets, bounds + over[0, 0].clip(0.0)))) is not None:
             return np.asarray(targets[last])
-        # One that gets outside even if the walk stops may get a little farther out, as it lifts off soon.
+        # A foot that gets outside even if the walk stops may get slightly farther out, as it lifts off soon.
         return np.asarray(reduced[_last_feasible(over - over[0].max(axis=0).clip(0.0) - _SLACK) or 0])
 
 

@@ -41,15 +41,16 @@ class GaitState(NamedTuple):
     Attributes
     ----------
     step_number : array, shape (legs,)
-        The step that each leg is in, or swings out of: touchdown at ``offset + step_number`` on the clock.
+        Number of each leg's present step, or of the last one during a swing; its touchdown is at
+        ``offset + step_number`` on the clock.
     down : array of bool, shape (legs,)
         Whether the foot is on the ground.
     swing_phase : array, shape (legs,)
         Fraction of the swing that is over.
     foot, foothold : complex array, shape (legs,)
-        Where the feet are, and where they are or will be put down, in G [m].
+        Where the feet are, and where they stand or will be put down, in G [m].
     swing_velocity, swing_acceleration : complex array, shape (legs,)
-        First and second derivative of a swinging foot's position by its swing phase [m].
+        First and second derivative of a swinging foot's position with respect to its swing phase [m].
     ground_height, start_height : array, shape (legs,)
         Height of the ground at each foothold, and of the foot at its lift-off, in G [m].
     twist : CriticallyDamped
@@ -112,7 +113,7 @@ class GaitState(NamedTuple):
         rest : complex array, shape (legs,)
             The rest footholds [m].
         posture : array, shape (13,)
-            The body: see `tarsus.gait.stance.stance_geometry`.
+            The posture: see `tarsus.gait.stance.stance_geometry`.
         """
         none, zero = np.zeros(len(rest)), np.zeros(len(rest), dtype=complex)
         return cls(
@@ -181,7 +182,7 @@ class StepInputs(NamedTuple):
     rest : complex array, shape (legs,)
         Rest footholds in the heading frame [m].
     placement_bounds : array, shape (legs, 16)
-        Distance from its rest foothold at which each foot may be put down, along each of `NORMALS` [m].
+        Greatest distance from its rest foothold at which each foot may be put down, along each of `NORMALS` [m].
     placement_radii : list of float
         The least of these distances of each foot [m].
     admittance_offset : array, shape (legs,)
@@ -219,6 +220,6 @@ def integrate_twist(origin: complex, yaw: float, travel: Sequence[float]) -> tup
     """Return origin [m] and yaw [rad] of a frame after a travel (x, y, angle): the exponential map of a twist."""
     x, y, angle = travel
     half = angle / 2
-    # The chord of the path over its arc length.
+    # Ratio of the path's chord to its arc length.
     chord = math.sin(half) / half if abs(half) > 1e-6 else 1 - half * half / 6
     return origin + cmath.exp(1j * (yaw + half)) * complex(x, y) * chord, yaw + angle

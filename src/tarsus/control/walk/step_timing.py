@@ -16,9 +16,9 @@ if TYPE_CHECKING:
 
 __all__ = ["StepTiming"]
 
-# The twist follows its target within about one stance: faster, and standing feet would be left behind.
+# The twist follows its target within about one stance: if it were faster, standing feet would be left behind.
 _TIME_CONSTANTS_PER_STANCE = 4.0
-# Number of feet that hold a robot.
+# Number of feet that suffice to hold a robot.
 _HELD = 3
 
 
@@ -62,7 +62,7 @@ class StepTiming(NamedTuple):
         return (gait.duty_factor, gait.offsets, gait.body_shift) == (mine.duty_factor, mine.offsets, mine.body_shift)
 
     def stands_before(self, gait: Gait) -> bool:
-        """Return whether the robot has to stand before it takes another gait: one of them shifts the body."""
+        """Return whether the robot has to stand before it changes to another gait: either of them shifts the body."""
         return (gait.body_shift or self.gait.body_shift) and not self.steps_like(gait)
 
     def due(self, state: GaitState, dt: float) -> list[bool]:
@@ -72,13 +72,13 @@ class StepTiming(NamedTuple):
         return [on and clock > offset + number + lifts for on, offset, number in steps]
 
     def stance_intervals(self, state: GaitState) -> tuple[Float[np.ndarray, "legs"], Float[np.ndarray, "legs"]]:
-        """Return from when until when each foot stands where it is, or where it will be put down: shape (legs,) [s]."""
+        """Return start and end of each foot's stance where it is, or where it will be put down: shape (legs,) [s]."""
         duty_factor, frequency = self.gait.duty_factor, self.frequency
         over = (stance_overhang(duty_factor) - 0.5) * duty_factor / frequency
         touchdown = np.asarray(self.gait.offsets) + state.step_number - state.clock
-        # A foot that has met the ground before its planned touchdown is where it may be from then on. One that waits
-        # already is past its lift-off: on ground that is felt, feet often wait for a tick or two until others have
-        # landed, which is taken from the time in which they fall behind after lift-off.
+        # A foot that has landed early needs to be in its polygon only from its planned touchdown on. One that is past
+        # its planned lift-off will still fall behind for a while after it lifts: on ground that is felt, where feet
+        # often wait for a tick or two until others have landed, the wait is taken from that time.
         waits, least = (touchdown.clip(0.0) / frequency, 0.0) if state.felt else (0.0, over)
         begins = np.where(state.down, waits, self.time_to_touchdown(state))
         lift_off = np.maximum((touchdown + duty_factor) / frequency + over, least)
@@ -89,7 +89,7 @@ class StepTiming(NamedTuple):
         return np.where(state.down, 0.0, (1 - state.swing_phase) * (1 - self.gait.duty_factor) / self.frequency)
 
     def with_first_lift(self, state: GaitState, leg: int) -> GaitState:
-        """Return the gait state with the clock at the lift-off of a leg; while the body is shifted, the clock stays.
+        """Return the gait state with the clock set to a leg's lift-off; while the body is shifted, the clock stays.
 
         Parameters
         ----------

@@ -19,17 +19,18 @@ if TYPE_CHECKING:
 __all__ = ["TARGET_FREEZE", "advance", "land", "stance_tolerance"]
 
 TARGET_FREEZE = 0.6
-"""Swing phase from which on the foothold stays: the rest of the swing suffices to reach it smoothly."""
+"""Fraction of its travel, by swing phase, after which a foothold is fixed: the rest suffices to reach it smoothly."""
 
-# Greatest fraction of its swing by which a foot that lifts off late may swing shorter.
+# Greatest fraction of its duration by which the swing of a foot that lifts off late is shortened.
 _LATEST = 0.5
 # Bandwidths of the admittance offsets and of the body shift's coefficients [rad/s].
 _ADMITTANCE_BANDWIDTH, _SHIFT_BANDWIDTH = 20.0, 5.0
-# A foot that feels the ground is at its rest foothold within the first distance, and stays there within the second [m].
+# A foot that feels the ground counts as at its rest foothold within the first distance, and once there, within the
+# second [m].
 _FELT_TOLERANCES = (0.015, 0.03)
-# Part of its way up to which a foot that feels the ground swings out.
+# Fraction of its travel, by swing phase, in which a foot that feels the ground swings out.
 _BOWS = 0.5
-# A speed below this is 0 [m/s].
+# A stopping robot whose twist is below this has stopped [m/s, rad/s].
 _NO_SPEED = 3e-7
 
 
@@ -42,7 +43,7 @@ def advance(state: GaitState, inputs: StepInputs, dt: float) -> GaitState:
         The gait state; what is constant for the time; the time [s].
     """
     twist, travel = state.twist.step_with_integral(inputs.twist, dt, bandwidth=inputs.bandwidth)
-    # The body pose is followed while the walk waits, too.
+    # The body pose follows its target even while the walk waits.
     posture = state.posture.settling_step(inputs.posture, dt, bandwidth=inputs.posture_bandwidth)
     offset = state.admittance_offset.settling_step(inputs.admittance_offset, dt, bandwidth=_ADMITTANCE_BANDWIDTH)
     shift = state.shift.settling_step(inputs.shift, dt, bandwidth=_SHIFT_BANDWIDTH)
@@ -55,7 +56,7 @@ def advance(state: GaitState, inputs: StepInputs, dt: float) -> GaitState:
     elapsed = inputs.frequency * dt
     rhythm, cycles, beats = state.rhythm, 0.0, 0.0
     if any((*state.posture.value[SWING_HEIGHT + 1 :].tolist(), *inputs.posture[SWING_HEIGHT + 1 :].tolist())):
-        # The body sways, or is to.
+        # The body sways, or is about to.
         rates = inputs.frequency * np.array([1.0, inputs.gait.beats])
         rhythm, (cycles, beats) = state.rhythm.step_with_integral(rates, dt, bandwidth=inputs.bandwidth)
     clock = state.clock + elapsed
@@ -90,7 +91,8 @@ def _lift(
 ) -> GaitState:
     """Lift the feet that are due; those that may not, or need not, miss this step.
 
-    `late` is the time since each was due at the start of the tick [cycles], `final` where feet stop, if they do.
+    `late` is how long each foot had been due at the start of the tick [cycles]; `final` are the footholds at which a
+    stopping robot will stand, None where it is not stopping or still too fast.
     """
     lifts = np.array(due)
     lifts[list(inputs.excluded)] = False
@@ -98,14 +100,14 @@ def _lift(
         scale = 1.0 if inputs.felt is None else inputs.felt.scale
         away = np.abs(state.foot - final) > stance_tolerance(state, scale=scale)
         away[list(inputs.unstepped)] = True
-        # A leg that returns to the gait is over its foothold at best.
+        # A leg that returns to the gait is above its foothold at best, and has to step.
         above = state.ground_height > POSITION_TOLERANCE if inputs.felt is None else ~np.array(inputs.felt.steps)
         lifts = lifts & (away | above)
     missed = due & ~lifts
-    # The admittance offset becomes the start of the swing.
+    # The admittance offset becomes part of the height at which the swing starts.
     offset = state.admittance_offset
     start, left = state.ground_height + offset.value, np.where(lifts, 0.0, offset.value)
-    # One that has not stood since its last swing rises anew.
+    # A foot that has not stood since its last swing starts a new rise.
     felt = [foot._replace(top=math.nan) if on else foot for foot, on in zip(state.felt, lifts.tolist(), strict=False)]
     return state._replace(
         step_number=state.step_number + missed,
@@ -115,20 +117,20 @@ def _lift(
         start_height=np.where(lifts, start, state.start_height),
         ground_height=np.where(lifts, start if state.felt else 0.0, state.ground_height),
         admittance_offset=offset._replace(value=left),
-        # Feet that lift off late swing shorter.
+        # Feet that lift off late swing for a shorter time.
         lift_delay=np.where(due, np.clip(late, 0.0, _LATEST * (1 - inputs.gait.duty_factor)), state.lift_delay),
     )
 
 
 def stance_tolerance(state: GaitState, *, scale: float, stands: bool = False) -> float:
-    """Return how close to its rest foothold a foot is at it [m].
+    """Return the distance within which a foot counts as at its rest foothold [m].
 
     Parameters
     ----------
     state, scale : GaitState, float
-        The gait state; by how much lengths are smaller than given, on short legs, 0 to 1.
+        The gait state; factor by which lengths are smaller than given, on short legs, 0 to 1.
     stands : bool
-        Whether the foot has been at it.
+        Whether the foot has been at it before.
     """
     return scale * _FELT_TOLERANCES[stands] if state.felt else POSITION_TOLERANCE
 
@@ -161,7 +163,7 @@ def _swing(
             target = predictor.foothold(leg, until, until + stance / 2) if final is None else complex(final[leg])
             targets[leg] = target
         if state.felt and drawn_back is None and phase < _BOWS * travel:
-            # A path is halfway at half of its time: there the foot is aside by its bow.
+            # A path is halfway at half of its time: there the foot is aside by half as much as its target, by the bow.
             target += 2 * state.felt[leg].bow
         left, path = end - phase, (target, 0j, 0j)
         if since >= swing - PHASE_TOLERANCE:

@@ -17,21 +17,21 @@ __all__ = ["TimeScaling"]
 
 _T = TypeVar("_T")
 
-# How fast the rate may rise, and how fast it falls ahead of high accelerations [1/s].
+# How fast the rate may rise, and how fast it may fall ahead of high accelerations or with a lag [1/s].
 _RISE, _FALL = 3.0, 5.0
 
 # Number of rates that are tried in a tick, and the fraction of the joints' speed and acceleration that is used.
 _TRIES, _USED = 5, 0.98
 # A joint this close to its target has caught up [rad].
 _CAUGHT_UP = 1e-9
-# Upward and downward.
+# Signs of upward and downward motion.
 _SIGNS = np.array([1.0, -1.0])[:, None, None]
-# Distance that a joint keeps from its limits where it catches up [rad].
+# Distance that a joint keeps from its limits while it catches up [rad].
 _SPARE = 1e-3
-# How far a joint may be behind before the walk becomes slower, and before it stands still [rad]; where feet are to keep
-# to their paths: some joints lag more than others, and a foot is lower then.
+# Lags of a joint at which the walk begins to slow down and at which it stands still [rad]; the same where feet have to
+# keep to their paths: joints that lag by different angles put a foot lower.
 _LAG, _EXACT_LAG = (0.2, 0.7), (0.02, 0.15)
-# Fraction of the joints' acceleration from which on to look ahead, the one to aim at then, and how far to look [s].
+# Used fraction of the joints' acceleration from which to look ahead; the fraction to aim at then; how far to look [s].
 _HIGH, _AIM, _AHEAD = 0.5, 0.75, 0.02
 
 
@@ -67,8 +67,8 @@ class TimeScaling:
         self._softest, self._slowest = float(self._hardest.min()) / 2, float(self._top_speed.min())
         self._ends: Float[np.ndarray, "2 legs 3"] = np.moveaxis(limits, -1, 0)[::-1].copy()
         self._speeds, self._target = np.zeros_like(angles), angles
-        # The room is how far the joints are from their ends at least [rad]; clear is for how long it need not look
-        # ahead again [s].
+        # `_room` is a lower bound of the joints' distances from their limits [rad]; `_clear` is the time for which no
+        # further look ahead is needed [s].
         self._last_dt = self._used = self._room = self._clear = 0.0
 
     def joints_held(self) -> None:
@@ -95,7 +95,7 @@ class TimeScaling:
             after = integrate(dt * rate)
             angles = solve(after)
             speeds, _, self._used, works = self._demand(angles, dt, between)
-            # Slowing down may be too sudden, too.
+            # Slowing down may itself be too sudden.
             other = rate if works or not tries else self._other_rate(speeds, rate, between)
             if other == rate:
                 break
@@ -106,9 +106,9 @@ class TimeScaling:
     def follow(
         self, integrate: Callable[[float], _T], solve: Callable[[_T], np.ndarray], dt: float, *, exact: bool = False
     ) -> _T:
-        """Return the state of a walk that feels the ground after a tick: its joints follow on their own.
+        """Return the state after a tick of a walk that feels the ground: each of its joints follows on its own.
 
-        The feet's trajectories change with every contact, at once. Where that asks for more than a joint's speed or
+        Every contact changes the feet's trajectories at once. Where that asks for more than a joint's speed or
         acceleration, the joint lags behind and catches up, and the walk advances more slowly meanwhile.
 
         Parameters
@@ -116,7 +116,7 @@ class TimeScaling:
         integrate, solve, dt
             As for `advance`.
         exact : bool
-            Whether feet are to keep to their paths: the walk becomes slower sooner.
+            Whether feet have to keep to their paths: the walk then slows down at smaller lags.
         """
         behind = None if self._target is self.angles else self._target - self.angles
         lag = 0.0 if behind is None else float(np.maximum.reduce(np.abs(behind), axis=None))
@@ -136,7 +136,7 @@ class TimeScaling:
                 self._speeds, self._last_dt, self._room = speeds, dt, self._room - fastest * dt
                 return after
             behind, self._room = np.zeros_like(target), 0.0
-        # The speed of the target, and the one from which a joint can still stop where it catches up.
+        # The speed of the target, plus one from which a joint can still stop as it catches up.
         far = np.abs(behind)
         catching = np.minimum(far / dt, np.sqrt(self._hardest * far))
         speeds = (target - self._target) / dt + np.copysign(catching, behind)
@@ -157,14 +157,14 @@ class TimeScaling:
         return np.asarray(_SIGNS * (self._ends - self.angles) - _SPARE)
 
     def _stopping_speeds(self, dt: float) -> Float[np.ndarray, "2 legs 3"]:
-        """Return the greatest speeds upward and downward from which the joints stop there, half as hard as they can."""
+        """Return the greatest speeds upward and downward from which half the acceleration stops the joints in time."""
         braking = self._hardest * (dt / 2)
         return np.asarray(np.sqrt(braking * braking + self._hardest * np.maximum(self._left(), 0.0)) - braking)
 
     def _demand(
         self, angles: Float[np.ndarray, "legs 3"], dt: float, between: float
     ) -> tuple[Float[np.ndarray, "legs 3"], float, float, bool]:
-        """Return the joints' speeds, the greatest, the used fraction of acceleration, and whether both are kept."""
+        """Return the joints' speeds, the greatest, the used fraction of acceleration, and whether bounds are kept."""
         speeds = (angles - self.angles) / dt
         used = max((np.abs(speeds - self._speeds) / self._acceleration).ravel().tolist()) / between
         fastest = max(map(abs, speeds.ravel().tolist()))
@@ -172,11 +172,11 @@ class TimeScaling:
         return speeds, fastest, used, slow and used <= _USED
 
     def _relaxed_rate(self, integrate: Callable[[float], _T], solve: Callable[[_T], np.ndarray]) -> float:
-        """Return the rate at which the joints keep well within their acceleration for the next moments."""
+        """Return the rate at which the joints stay well within their acceleration for the next moments."""
         first, second = solve(integrate(_AHEAD)), solve(integrate(2 * _AHEAD))
         acceleration = np.abs(second - 2 * first + self.angles) / (_AHEAD * _AHEAD)
         used = float((acceleration / self._acceleration).max())
-        # What is seen reaches twice as far.
+        # The time that has been examined is twice as long.
         self._clear = 0.0 if used > _AIM else _AHEAD
         return math.sqrt(_AIM / max(used, _AIM))
 

@@ -19,41 +19,42 @@ _STILL = FeltFoot()
 # Of a foot in the air: swing phase, duration of the swing [s], height at lift-off and place in G [m].
 _Swing: TypeAlias = tuple[float, float, float, complex]
 
-# Swing phase at which a foot is at its top, and on rough ground.
+# Swing phase at which a foot is at its top, on even and on rough ground.
 _TOP_PHASE, _ROUGH_TOP_PHASE = 0.42, 0.45
-# Mean speed up to a top that changes on the way, at most: a foot close to it would be thrown up [m/s].
+# Greatest mean speed up to a top that changes during the rise [m/s]: without it, a foot shortly before its top would be
+# thrown up.
 _FASTEST_RISE = 0.5
-# Least rise over where a foot lifted off, over the swing height: less, and it drags on the ground as the body sinks.
+# Least rise above lift-off, over the swing height: with less, the foot drags on the ground as the body sinks.
 _LEAST_RISE = 0.5
-# Where the ground rises soon: up to which swing phase a foot may begin to rise before it travels, and its top's phase.
+# Where the ground rises soon: swing phase up to which a foot may begin to rise before it travels; phase of its top.
 _RISING_FIRST, _STEEP_TOP_PHASE = 0.15, 0.35
-# Fraction of a swing in which a foot goes down from its top to the expected ground, on rough ground, and at least where
-# contact is known late.
+# Fraction of a swing in which a foot goes down from its top to the expected ground: on even ground, on rough ground,
+# and the least where contact is known late.
 _DESCENT, _ROUGH_DESCENT, _SHORTEST_DESCENT = 0.5, 0.4, 0.2
-# That fraction, and the speed, of a foot that slows down before contact [m/s].
+# The same fraction for a foot that slows down before contact, and its speed then [m/s].
 _SLOW_DESCENT, _SLOW_CONTACT = 0.52, 0.09
-# How much of its way down a slope a foot at its top has behind it.
+# Fraction of its way down a slope that a foot has covered at its top.
 _BEHIND = 0.5
-# Height over the ground from which on a foot goes back, over the swing height.
+# Height over the expected ground from which a foot moves to the place it steps back to, over the height it rises to.
 _CLEAR = 0.9
-# Least speed of a descending foot, and of a foot that should stand and feels nothing [m/s].
+# Least downward speed of a swinging foot, and of a foot that should stand but has no contact [m/s].
 _LOWERING, _SEARCHING = 0.12, 0.15
-# Such a speed of a foot that has stood, while this many others stand, and how far below the expected ground it is then
-# [m/s], [m]: a faster one would push the others off.
+# Least downward speed, on even ground, of a foot that has lost its contact [m/s], while this many others stand and it
+# is this far below the expected ground [m]: a faster one would push the others off the ground.
 _LOSING, _OTHERS, _NEAR = 0.04, 3, 0.004
-# That speed in gaits in which more than three feet always stand, while the walk goes on at this rate at least [m/s]:
+# The same in gaits in which more than three feet always stand [m/s], while the rate of the walk is above the second:
 # feet that are pushed off search in turn.
 _LOSING_ONE_OF_MANY, _GOES_ON = 0.02, 0.5
 # Time in which a foot that should stand goes down to the expected ground [s].
 _SEARCH_TIME = 0.1
-# From how high over the expected ground on a foot slows down, and how far one whose contact is known late goes into the
-# ground at most until then [m], besides so much of its depth below the expected ground.
+# Height over the expected ground below which a foot slows down [m]; how far one whose contact is known late may press
+# into the ground until then [m], plus this fraction of the depth that it should reach below the expected ground.
 _NEARS, _PRESSED, _PRESSED_DEEP = 0.007, 0.004, 0.4
-# Room over known ground on the way of a foot that goes down [m].
+# Clearance of a descending foot over known ground on its way [m].
 _OVER = 0.015
-# How far from where it was drawn back to a foot goes down again [m].
+# Distance from the place it was drawn back to from which a foot goes down again [m].
 _PAST = 0.05
-# Speeds of a foot that steps back, up and back [m/s].
+# Upward and horizontal speed of a foot that steps back [m/s].
 _RISING, _BACK = 0.3, 0.4
 # Greatest changes of speed: of feet in the air, of the body, of feet on the ground, and of their slide [m/s^2].
 _FOOT_ACCELERATION, _BODY_ACCELERATION, _STANDING_ACCELERATION, _STOPPING = 6.0, 1.0, 15.0, 12.0
@@ -65,14 +66,14 @@ def moved_vertically(state: GaitState, inputs: StepInputs, dt: float) -> GaitSta
     Parameters
     ----------
     state, inputs, dt : GaitState, StepInputs, float
-        The gait state after the time, but for heights; what is constant for the time; the time [s].
+        The gait state after the time, except for heights; what is constant for the time; the time [s].
     """
     felt = inputs.felt
     if felt is None:
         return state
     climb = _towards(state.climb, felt.rates.climb, _BODY_ACCELERATION * dt)
     body, heading = state.elevation + float(state.posture.value[2]), cmath.exp(1j * state.yaw)
-    # In G.
+    # Both in G.
     turning, drift = complex(felt.rates.turn[1], -felt.rates.turn[0]) * heading, felt.drift * heading
     yaw_rate = 1j * felt.yaw_rate
     swing, origin, across = 1 - inputs.gait.duty_factor, state.origin, turning.conjugate()
@@ -84,7 +85,7 @@ def moved_vertically(state: GaitState, inputs: StepInputs, dt: float) -> GaitSta
         if not steps:
             feet[leg] = foot._replace(speed=0.0, acceleration=0.0)
         elif down:
-            # On the ground it moves by its turn about the body, its drift and its slide.
+            # A foot on the ground moves by the turn about the body, the drift and its slide.
             before, top, slide = foot.speed, foot.top, foot.slide
             place = places[leg]
             arm = place - origin
@@ -96,7 +97,7 @@ def moved_vertically(state: GaitState, inputs: StepInputs, dt: float) -> GaitSta
                 speed = _towards(before, wanted, step)
                 heights[leg], top = height + (before + speed) / 2 * dt, math.nan
             else:
-                assert under is not None  # known of each foot that has lost its contact
+                assert under is not None  # given for each foot that has lost its contact
                 heights[leg], place, speed = _searching(height, foot, place, wanted, under, felt, dt)
             if slide:
                 left = max(1 - stop / abs(slide), 0.0)
@@ -105,7 +106,7 @@ def moved_vertically(state: GaitState, inputs: StepInputs, dt: float) -> GaitSta
             places[leg] = place
             feet[leg] = FeltFoot(speed, 0.0, top, 0.0, slide) if speed or slide or top > -math.inf else _STILL
         else:
-            assert under is not None  # known of each foot in the air
+            assert under is not None  # given for each foot in the air
             swing_time = (swing - delays[leg]) / inputs.frequency if inputs.frequency else math.inf
             now = (phases[leg], swing_time, starts[leg], places[leg])
             heights[leg], feet[leg] = _swinging(height, foot, under, felt, dt, now)
@@ -131,7 +132,7 @@ def _searching(
     """Return height, place and speed of a foot that should stand and has no contact: it goes down, or steps back."""
     over, speed = height - under.expected, foot.speed
     if under.place is None or abs(under.place - place) <= _BACK * dt:
-        # Its place moves while the body backs off.
+        # The place to step to moves while the body backs off.
         place = place if under.place is None else under.place
         least = felt.scale * _SEARCHING
         fastest = felt.lowering if under.place is None else max(felt.lowering, least)
@@ -140,7 +141,7 @@ def _searching(
         after = _towards(speed, wanted, _FOOT_ACCELERATION * dt)
         height, after = _no_lower(height + (speed + after) / 2 * dt, after, height, under.lowest)
         return height, place, after
-    # It rises over the edge or the obstacle, then goes to its place.
+    # The foot rises over the edge or the obstacle, then goes to its place.
     clear = felt.swing_height if math.isnan(foot.top) else foot.top - under.expected
     way, rising = under.place - place, _RISING if over < clear else 0.0
     after = _towards(speed, rising, _FOOT_ACCELERATION * dt)
@@ -150,7 +151,7 @@ def _searching(
 
 
 def _losing(over: float, felt: FeltInputs) -> float:
-    """Return the least speed down of a foot that has stood, so high over the expected ground, while others stand."""
+    """Return the least downward speed of a foot that has lost its contact, at a height over the expected ground."""
     if felt.redundant and felt.pace > _GOES_ON:
         return felt.scale * _LOSING_ONE_OF_MANY
     rough = felt.rough if over < -felt.scale * _NEAR else 1.0
@@ -166,7 +167,7 @@ def _swinging(
     part = _DESCENT + felt.rough * (_ROUGH_DESCENT - _DESCENT)
     part = max(part + felt.slow_contact * (_SLOW_DESCENT - part) - felt.late / swing_time, _SHORTEST_DESCENT)
     if math.isnan(top) or (phase < top_phase and drawn_back is None):
-        # No higher than the foot can be there in time, and down again by the end of its swing.
+        # No higher than the foot can rise in time, and come down from by the end of its swing.
         top_phase = _TOP_PHASE + felt.rough * (_ROUGH_TOP_PHASE - _TOP_PHASE)
         rises = height + _FASTEST_RISE * (top_phase - phase) * swing_time
         falls = under.expected - felt.depth + felt.lowering * part * swing_time
@@ -194,7 +195,7 @@ def _swinging(
         fastest += felt.slow_contact * (felt.scale * _SLOW_CONTACT - fastest)
     fastest = min(fastest, felt.lowering, _fastest_contact(over, felt))
     after = _towards(speed, -fastest, _FOOT_ACCELERATION * dt)
-    # Over higher ground on its way it stays.
+    # Over higher ground on its way the foot stays up.
     lowest = under.lowest
     room = felt.scale * _OVER
     if under.way > under.expected + room:
@@ -206,13 +207,13 @@ def _swinging(
 
 
 def _fastest_contact(over: float, felt: FeltInputs) -> float:
-    """Return the greatest speed of a foot so high over the expected ground: it goes on until its contact is known."""
+    """Return the greatest downward speed of a foot just over the expected ground: it goes on until contact is known."""
     nears = felt.late > 0.0 and over < felt.scale * _NEARS
     return (felt.scale * _PRESSED + _PRESSED_DEEP * felt.depth) / felt.late if nears else math.inf
 
 
 def _no_lower(height: float, speed: float, before: float, lowest: float) -> tuple[float, float]:
-    """Return height and speed of a foot that stops at a least height; below it, it stays where it was before."""
+    """Return height and speed of a foot that stops at a least height; a foot already below stays where it was."""
     return (height, speed) if height >= lowest else (min(lowest, max(before, height)), 0.0)
 
 
