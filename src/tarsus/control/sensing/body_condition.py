@@ -1,4 +1,4 @@
-"""Condition of the body: in the air, or fallen, by contacts and attitude."""
+"""Condition of the body, from contacts and attitude: in the air, or fallen."""
 
 from __future__ import annotations
 
@@ -10,23 +10,23 @@ from tarsus.control.readings import RollPitch
 
 __all__ = ["BodyCondition"]
 
-# Without any contact for longer, the robot is in the air; once its feet have held it for so long, it is put down [s].
+# Time without any contact after which the robot is in the air, and time its feet must hold it to count as put down [s].
 _IN_AIR, _PUT_DOWN = 0.5, 0.2
-# Tilt from which on the robot has fallen, below which it stands again, and for how long [rad], [s].
+# Tilt above which the robot has fallen, and below which it is upright again [rad]; how long either must last [s].
 _FALLEN, _UPRIGHT, _LASTS = math.radians(45.0), math.radians(30.0), 0.2
 
 
 class BodyCondition:
-    """Tells whether the robot is held in the air, and whether it has fallen: it does not step then.
+    """Tells whether the robot is held in the air or has fallen; in either case it does not step.
 
     Attributes
     ----------
     airborne : float
-        Time since a foot has touched the ground [s]; 0 where no contact is measured.
+        Time since any foot last touched the ground [s]; 0 where no contact is measured.
     tilt : float
         Angle of the body against gravity, as measured last [rad].
     fallen, carried : bool
-        Whether the robot lies on its side or its back; whether it is in the air, or is being put down.
+        Whether the robot has fallen onto its side or back; whether it is in the air, or is being put down.
     """
 
     def __init__(self) -> None:
@@ -35,20 +35,20 @@ class BodyCondition:
 
     @property
     def in_air(self) -> bool:
-        """Whether the robot is held in the air: feet do not search the ground."""
+        """Whether the robot is held in the air, where its feet do not search for the ground."""
         return self.airborne > _IN_AIR
 
     def step(self, touching: Sequence[bool], attitude: RollPitch | None, dt: float, *, held: bool) -> None:
-        """Take in contacts and attitude of a tick.
+        """Take in the contacts and the attitude of a tick.
 
         Parameters
         ----------
         touching : sequence of bool
             Which feet touch the ground; True where nothing is known.
         attitude : (roll, pitch) or None
-            Measured [rad]; None where it is not, as beyond 60 degrees.
+            Measured attitude [rad]; None where it is not measured, or rejected as beyond 60 degrees.
         dt, held : float, bool
-            Time since the last tick [s]; whether the feet that touch hold the robot.
+            Time since the last tick [s]; whether the feet in contact hold the robot.
         """
         self.airborne = 0.0 if any(touching) else self.airborne + dt
         self._held = self._held + dt if held else 0.0

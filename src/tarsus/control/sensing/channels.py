@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 __all__ = ["channels_of"]
 
 _T = TypeVar("_T")
-# Consecutive plausible readings after which what was rejected is accepted again.
+# Consecutive plausible readings after which a part that was rejected is accepted again, from the next reading on.
 _SETTLED = 3
 # Greatest magnitude of roll and pitch [rad], and greatest rate of change of each [rad/s].
 _MOST_TILT, _MOST_TURN = math.radians(60.0), 6.0
@@ -32,17 +32,17 @@ _MOST_TILT, _MOST_TURN = math.radians(60.0), 6.0
 _NOISE = 0.03
 _BEYOND = f"roll or pitch beyond {math.degrees(_MOST_TILT):.4g} deg"
 _TURNS = f"changes faster than {math.degrees(_MOST_TURN):.4g} deg/s"
-# How far beyond their limits joints may be measured, and by how much angles may change at once [rad]; how much faster
-# than its servo without load a joint may be turned.
+# Joint angles: how far they may lie beyond their limits, and by how much they may change at once [rad]; how fast they
+# may change besides, as a multiple of the no-load speed of the robot's fastest servo.
 _OUTSIDE, _JUMP, _FASTER = 0.5, 0.5, 2.0
 _FINITE = (-sys.float_info.max, sys.float_info.max)
 _Bounds: TypeAlias = "tuple[float | Float[np.ndarray, '...'], float | Float[np.ndarray, '...']]"
 # Greatest force on one foot, in weights of the robot, and greatest torque, in stall torques of the joint's servo.
 _MOST_WEIGHTS, _MOST_STALLS = 4.0, 1.5
-# Bounds where the robot's masses or servos are unknown, above those of any robot this is made for [N], [N m].
+# Weight [N] and stall torque [N m] assumed where masses or servos are unknown, above those of any intended robot.
 _ANY_WEIGHT, _ANY_STALL_TORQUE = 1e4, 1e3
-# Greatest downward force on a foot, in weights: from a load cell's zero offset and the inertia of a swinging leg.
-# Beyond that the sign is wrong.
+# Greatest downward force on a foot, in weights of the robot: a load cell's zero offset and the inertia of a swinging
+# leg may cause it. Beyond that, the sign is wrong.
 _PULL = 0.25
 _TOO_HEAVY = f"beyond {_MOST_WEIGHTS:g} times the robot's weight, or downward beyond {_PULL:g} times"
 _TOO_STRONG = f"beyond {_MOST_STALLS:g} times the stall torque"
@@ -51,7 +51,7 @@ _FINITE_CHANNELS = ("joint_speeds", "currents", "temperatures", "voltages")
 
 
 def channels_of(robot: Robot) -> dict[str, Any]:
-    """Return the channels of the readings of a single robot, by their names."""
+    """Return the channels of a single robot's readings, by name."""
     legs, weight = robot.leg_codes, known_weight(robot) or _ANY_WEIGHT
     force, fastest = _MOST_WEIGHTS * weight, float(joint_limits(robot).speed.max())
     stalls = [[servo.stall_torque if servo else _ANY_STALL_TORQUE for servo in row] for row in robot.servos]
@@ -70,7 +70,7 @@ def channels_of(robot: Robot) -> dict[str, Any]:
 
 
 class _Channel:
-    """The state of a channel: that of one part for the body, or of one for each leg.
+    """A channel and its state: one part for the body, or one part for each leg.
 
     Parameters
     ----------
@@ -80,11 +80,11 @@ class _Channel:
     Attributes
     ----------
     now : float
-        The time [s].
+        The present time [s].
     """
 
     def __init__(self, names: Sequence[str]) -> None:
-        # How many plausible readings in a row it takes until each part is accepted.
+        # How many plausible readings in a row each part still needs until it is accepted.
         self._names, self._unsettled, self.now = names, [0] * len(names), 0.0
 
     def reset(self) -> None:
@@ -92,7 +92,7 @@ class _Channel:
         self._unsettled = [_SETTLED] * len(self._names)
 
     def _accepted(self, part: int, reading: _T | str, rejected: list[str]) -> _T | None:
-        """Return the reading of a part; None if it is rejected: a text is what is wrong with it."""
+        """Return the reading of a part, or None if it is rejected; a text in its place says what is wrong with it."""
         if isinstance(reading, str):
             self._unsettled[part] = _SETTLED
             rejected.append(f"{self._names[part]}: {reading}")
@@ -114,7 +114,7 @@ class _AttitudeChannel(_Channel):
         self._read = 0.0
 
     def read(self, value: Any, rejected: list[str]) -> RollPitch | None:
-        """Return the reading if it is accepted; the reason of a rejection is appended to `rejected`."""
+        """Return the reading if it is accepted; the reason for a rejection is appended to `rejected`."""
         return self._accepted(0, self._checked(value), rejected)
 
     def _checked(self, value: Any) -> RollPitch | str:
@@ -136,16 +136,16 @@ class _AngularRateChannel(_Channel):
     """Angular velocity of the body, plausible where it is finite."""
 
     def read(self, value: Any, rejected: list[str]) -> Vector | None:
-        """Return the reading if it is accepted; the reason of a rejection is appended to `rejected`."""
+        """Return the reading if it is accepted; the reason for a rejection is appended to `rejected`."""
         reading = as_vector(value)
         return self._accepted(0, reading if all(map(math.isfinite, reading)) else "not three finite numbers", rejected)
 
 
 class _GroundChannel(_Channel):
-    """Heights of the ground, which have been checked as they were made: nothing has to settle."""
+    """Heights of the ground, which are checked when they are made, so that nothing has to settle."""
 
     def read(self, value: Any, rejected: list[str]) -> GroundHeights | None:
-        """Return the heights; if they are none, None, and the reason is appended to `rejected`."""
+        """Return the heights; for anything else, append the reason to `rejected` and return None."""
         if type(value) is GroundHeights:
             return value
         rejected.append("ground: not of class GroundHeights")
@@ -160,7 +160,7 @@ class _LegChannel(_Channel, ABC):
     name, legs : str, sequence of str
         Name of the channel in messages; names of the legs in messages.
     kind, *shapes : type, tuple of int
-        Type of the usual numbers; shapes accepted of an array, the usual one first.
+        Data type of usual arrays, which are read fast; accepted shapes of arrays, the usual one first.
     """
 
     def __init__(self, name: str, legs: Sequence[str], kind: type, *shapes: tuple[int, ...]) -> None:
@@ -169,9 +169,9 @@ class _LegChannel(_Channel, ABC):
         self._usual = np.dtype(kind)
 
     def read(self, value: Any, rejected: list[str]) -> tuple[Any, ...] | None:
-        """Return the accepted readings; None for a leg, or for all, where none is.
+        """Return the accepted readings, None for a rejected leg; None as a whole where no leg's reading is accepted.
 
-        The reasons of rejections are appended to `rejected`.
+        The reasons for rejections are appended to `rejected`.
         """
         usual = type(value) is np.ndarray and value.dtype is self._usual and value.shape == self._shapes[0]
         if usual and not any(self._unsettled) and (found := self._read_usual(value.ravel().tolist())):
@@ -186,7 +186,7 @@ class _LegChannel(_Channel, ABC):
 
     @abstractmethod
     def _read_usual(self, numbers: list[Any]) -> tuple[Any, ...] | None:
-        """Return the readings of all legs by the numbers of a usual array; None if not all are plausible for sure."""
+        """Return the readings of all legs from the numbers of a usual array; None unless all are surely plausible."""
 
     @abstractmethod
     def _read_leg(self, leg: int, value: Any) -> Any:
@@ -215,11 +215,11 @@ class _VectorChannel(_LegChannel):
     name, legs : str, sequence of str
         Name of the channel in messages; names of the legs in messages.
     bounds : tuple of (float or array, shape (3,) or (legs, 3))
-        Between which each number is plausible; left out, every finite one is.
+        Least and greatest plausible value of each number; left out, every finite number is plausible.
     beyond : str
-        The reason given for numbers outside these ranges.
+        The reason given for numbers outside the bounds.
     accept_z : bool
-        Whether one number per leg, the third of three, is accepted too.
+        Whether one number per leg, the last of the three, is accepted too.
     """
 
     def __init__(
@@ -247,7 +247,7 @@ class _VectorChannel(_LegChannel):
 
 
 class _ForceChannel(_VectorChannel):
-    """Forces on feet: friction on the side of an obstacle pulls a foot down by as much as that pushes it aside."""
+    """Forces on feet; friction on the side of an obstacle may add a downward force as great as the horizontal one."""
 
     def _is_plausible(self, leg: int, vector: Vector) -> bool:
         x, y, z = vector
@@ -255,7 +255,7 @@ class _ForceChannel(_VectorChannel):
 
 
 class _JointAngleChannel(_VectorChannel):
-    """Joint angles, plausible near the joints' limits and while they change no faster than a leg is turned.
+    """Joint angles, plausible within or near the joints' limits, while they change no faster than a leg can be turned.
 
     Parameters
     ----------
@@ -271,7 +271,7 @@ class _JointAngleChannel(_VectorChannel):
         beyond = f"beyond the joint's limits by more than {math.degrees(_OUTSIDE):.3g} deg"
         bounds = limits[..., 0] - _OUTSIDE, limits[..., 1] + _OUTSIDE
         super().__init__("joint_angles", legs, bounds, beyond=beyond)
-        # The last plausible angles of all legs, NaN before, and when those of each leg were read.
+        # The last plausible angles of all legs, NaN before the first, and when those of each leg were read.
         self._last, self._read, self._speed = [math.nan] * 3 * len(legs), [0.0] * len(legs), speed
 
     def _read_usual(self, numbers: list[float]) -> tuple[Vector, ...] | None:

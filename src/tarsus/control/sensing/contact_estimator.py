@@ -1,4 +1,4 @@
-"""Contact estimator: which feet bear load, by probability, from readings that are wrong now and then."""
+"""Contact estimator: which feet probably bear load, from readings that are occasionally wrong."""
 
 from __future__ import annotations
 
@@ -11,26 +11,26 @@ from tarsus.control.walk.state import GaitState
 __all__ = ["ContactEstimator", "Contacts"]
 
 Contacts: TypeAlias = Sequence[bool | None] | None
-"""Which feet touch the ground, as measured, None for one that is not; None where nothing is."""
+"""Which feet touch the ground, as measured: None for a foot that is not measured, None as a whole where no foot is."""
 
-# Bound of the log odds: what a foot has been doing is forgotten by evidence of this size.
+# Bound on the magnitude of the log odds: evidence of this size outweighs all earlier readings of a foot.
 _BOUND = 6.0
-# Fraction of wrong readings that is assumed at first, with the weight of so many readings, and the greatest one.
+# Fraction of wrong readings: first guess, number of readings that this guess counts for, and upper bound.
 _ERROR, _WEIGHT, _GREATEST_ERROR = 0.001, 600.0, 0.2
-# Readings after which half of what is known of the errors is forgotten.
+# Number of readings above which the counts of all and of wrong readings are halved, to forget old ones.
 _MEMORY = 3000.0
-# A contact that has not been measured for longer is unknown [s].
+# Time without a measurement after which a contact is unknown [s].
 _TIMEOUT = 0.15
-# Swing phase up to which contact that has not ceased since lift-off tells nothing.
+# Swing phase up to which contact that has lasted since lift-off is still as planned.
 _RISING = 0.3
 
 
 class ContactEstimator:
     """Estimates contacts by Bayes' rule in log odds; how often readings are wrong is estimated as well.
 
-    A reading that differs from the one before and the one after it was wrong. The more of them there are, the more
-    readings in agreement it takes to change an estimate: one below 0.25 % of wrong readings, two up to 4.7 %, three up
-    to 12 %.
+    A reading that differs from the ones before and after it counts as wrong. The greater the fraction of wrong
+    readings, the more of them must agree to change an estimate: one where fewer than 0.25 % are wrong, two up to 4.7 %,
+    three up to 12 %.
 
     Parameters
     ----------
@@ -40,8 +40,8 @@ class ContactEstimator:
     Attributes
     ----------
     touching, known, certain : list of bool
-        Whether a foot bears load, more probably than not; whether its contact is measured; whether more readings like
-        the last ones change no estimate.
+        Whether each foot bears load, more probably than not; whether its contact is known; whether its estimate has
+        reached its bound, where more readings like the last ones do not change it.
     error : float
         Estimated fraction of wrong readings.
     """
@@ -62,7 +62,7 @@ class ContactEstimator:
         readings : Contacts
             Which feet touch the ground, as measured.
         dt, count : float, int
-            Time since the last tick [s]; how many readings have been the same, this one included.
+            Time since the last call [s]; how many ticks the readings stand for, this one included.
         """
         evidence = math.log((1 - self.error) / self.error)
         for leg, reading in enumerate(readings or (None,) * len(self.touching)):
@@ -84,20 +84,20 @@ class ContactEstimator:
         self.error = min(self._wrong / self._read, _GREATEST_ERROR)
 
     def reads(self, leg: int) -> bool:
-        """Return whether a foot bears load, more probably than not, and its last reading says so."""
+        """Return whether a foot probably bears load, and its last reading agrees."""
         return self.touching[leg] and self._last[leg][1]
 
     def as_planned(self, readings: Contacts, state: GaitState, lifted: Sequence[bool]) -> bool:
-        """Return whether the feet touch the ground that should, and no others, and that is certain.
+        """Return whether it is certain that exactly the feet that should touch the ground do so.
 
         Parameters
         ----------
         readings : Contacts
             Which feet touch the ground, as measured.
         state : GaitState
-            Which feet should stand; those that have just lifted off may touch the ground still, or not any more.
+            Which feet should stand; those that have just lifted off may still touch the ground, or no longer.
         lifted : sequence of bool
-            Which of the others have been without contact since they lifted off.
+            Which of the others have lost contact since they lifted off.
         """
         if readings is None:
             return False

@@ -1,4 +1,4 @@
-"""Continued readings: what was measured in an earlier tick, until there is something newer."""
+"""Continued readings: earlier measurements stand in for missing ones, for a short time."""
 
 from __future__ import annotations
 
@@ -17,21 +17,21 @@ if TYPE_CHECKING:
 
 __all__ = ["ContinuedReadings"]
 
-# For how long the last reading stands for those that are missing [s].
+# How long the last reading stands in for missing ones [s].
 _HELD = 0.1
-# Channels that are continued; contacts that are missing tell the contact estimator nothing.
+# Channels that are continued, of the legs and of the body. Contacts are not: their estimator copes with missing ones.
 _OF_LEGS, _OF_BODY = ("joint_angles", "forces", "torques"), ("attitude", "angular_rates")
-# For how long commands are kept [s]: as long as readings are held, besides the longest lag of joints.
+# How long commands are kept [s]: for as long as readings are held, plus the longest lag of joints.
 _KEPT = 0.35
-# Angles are new that are no older than other new ones by so many ticks; how fast the age of these may rise [s/s].
+# Joint angles count as new up to so many ticks above the usual age of new ones; how fast that age may rise [s/s].
 _SAME, _SLOWER = 0.5, 0.02
 
 
 class ContinuedReadings:
-    """Continues readings that are missing or given again: where answers are lost, or servos are asked in turn.
+    """Continues readings that are missing or repeated: where replies are lost, or servos are polled in turn.
 
-    What is missing, or has been rejected, stays as it was measured last, for 0.1 s. Joint angles of an earlier tick, as
-    their ages tell, are taken to have moved as commanded since: what they are off by stays the same.
+    A missing or rejected reading is replaced by the last measured one, for up to 0.1 s. Joint angles that date from an
+    earlier tick, by their ages, are taken to have moved as commanded since, with the same tracking error.
 
     Parameters
     ----------
@@ -41,32 +41,32 @@ class ContinuedReadings:
     Attributes
     ----------
     valid : ValidReadings
-        Those of the last readings that passed validation.
+        The last given readings, as far as they passed validation.
     """
 
     def __init__(self, robot: Robot) -> None:
         self.valid, self._validator = ValidReadings(), ReadingsValidator(robot)
-        # The readings that were returned last, as they were measured.
+        # The readings returned last, with joint angles as they were measured.
         self._last = self.valid
-        # For how long a channel of the body (leg -1), or a leg's reading in one, has been missing [s].
+        # How long a reading has been missing, by channel and leg; leg -1 is the body [s].
         self._missing = dict[tuple[str, int], float]()
         self._now = 0.0
         self._commands: deque[tuple[float, list[Vector]]] = deque()
-        # Ages of joint angles, of all joints or of each, and those of new ones [s].
+        # Age of the joint angles, one for all joints or one for each, and the usual age of new ones [s].
         self._ages: float | Float[np.ndarray, "legs 3"] = _KEPT
         self._usual = math.inf
 
     def step(self, readings: SensorReadings | None, commanded: list[Vector], dt: float, *, lag: float) -> ValidReadings:
-        """Return the readings of now; joint angles with the age that new ones have.
+        """Return the present readings, with all joint angles brought to the usual age of new ones.
 
         Parameters
         ----------
         readings : SensorReadings or None
-            The readings that are given.
+            The readings given in this tick.
         commanded : list of (coxa, femur, tibia)
             Joint angles that were commanded in the last tick [rad].
         dt, lag : float
-            Time since the last tick; from a command to its reading [s].
+            Time since the last tick; lag from a command to its reading [s].
         """
         self._now += dt
         self._commands.append((self._now, commanded))
@@ -82,7 +82,7 @@ class ContinuedReadings:
         return valid if valid.joint_angles is None else self._predicted(valid, dt, lag)
 
     def _held(self, valid: ValidReadings, dt: float) -> ValidReadings:
-        """Return the readings with the last ones for those that have not been missing for long."""
+        """Return the readings, with the last ones in place of those that have been missing for a short time."""
         held, legs = dict[str, Any](), len(self._commands[-1][1])
         for name in _OF_LEGS:
             now, last = (getattr(readings, name) or (None,) * legs for readings in (valid, self._last))
@@ -94,7 +94,7 @@ class ContinuedReadings:
         return valid._replace(**held)
 
     def _newest(self, key: tuple[str, int], given: Any, last: Any, dt: float) -> Any:
-        """Return what is given, or for a while the last of it."""
+        """Return the given reading or, while it has been missing for a short time, the last one."""
         missing = self._missing.pop(key, 0.0) + dt
         if given is not None or last is None or missing > _HELD:
             return given
@@ -102,7 +102,7 @@ class ContinuedReadings:
         return last
 
     def _predicted(self, valid: ValidReadings, dt: float, lag: float) -> ValidReadings:
-        """Return the readings with the joint angles of now."""
+        """Return the readings with joint angles brought to the usual age of new ones."""
         ages: float | Float[np.ndarray, "legs 3"] = np.array(valid.joint_ages) if valid.joint_ages else valid.joint_age
         shape = len(self._commands[-1][1]), 3
         given = self.valid.joint_angles or (None,) * shape[0]
@@ -122,7 +122,7 @@ class ContinuedReadings:
         return valid._replace(joint_angles=angles, joint_age=usual, predicted=frozenset(predicted.tolist()))
 
     def _moved(self, held: Float[np.ndarray, "legs 3"], lag: float) -> Float[np.ndarray, "legs 3"]:
-        """Return what joints have been commanded to move since, a lag before [rad]."""
+        """Return how far joints were commanded to turn during the time `held`, up to a lag ago [rad]."""
         times, commands = (np.array(column) for column in zip(*self._commands, strict=True))
         if len(times) < 2:
             return np.zeros_like(held)

@@ -22,12 +22,12 @@ if TYPE_CHECKING:
 
 __all__ = ["FootLoads"]
 
-# A foot that bears this share of the robot's weight is on the ground.
+# A foot that bears more than this share of the robot's weight is on the ground.
 _CONTACT_SHARE = 0.04
-# Swing phases between which a foot is in the air; how fast the zero offset of its load cell is learnt there [1/s], and
-# its greatest error at once and in all, over the robot's weight.
+# Swing phases between which a foot is in the air; how fast the zero offset of its load cell is learnt there [1/s];
+# bounds on the error that is learnt from, and on the offset itself, over the robot's weight.
 _RISEN, _LANDS, _RATE, _MOST_ERROR, _MOST_OFFSET = 0.2, 0.5, 5.0, 0.1, 0.15
-# Joint angles tell of contacts once nothing else has for so long [s].
+# Contacts are estimated from joint angles once no other sensor has measured them for this long [s].
 _UNTOLD = 0.15
 
 
@@ -44,7 +44,7 @@ class FootLoads:
     Attributes
     ----------
     estimated : bool
-        Whether contacts are estimated by joint angles.
+        Whether contacts are estimated from joint angles.
     """
 
     def __init__(self, robot: Robot, admittance: Admittance | None) -> None:
@@ -52,14 +52,14 @@ class FootLoads:
         self._torques = FootForceEstimator(robot)
         self._joints = JointContacts(robot) if robot.has_masses and all(map(all, robot.servos)) else None
         self.estimated, self._untold = False, math.inf
-        # What load cells measure without a load [N].
+        # Zero offset of each load cell: what it measures without load [N].
         self._zeros = [0.0] * robot.legs
         self._filter = AdmittanceFilter(admittance, robot.legs) if admittance else None
 
     def contacts(self, valid: ValidReadings, commanded: list[Vector], state: GaitState, dt: float) -> Contacts:
         """Return which feet touch the ground: from switches, else load cells, else joint angles; None where unknown.
 
-        Joint torques do not tell: position-controlled legs press against each other, and a swinging leg is accelerated.
+        Joint torques are not used: position-controlled legs press against each other, and swinging legs accelerate.
 
         Parameters
         ----------
@@ -84,7 +84,7 @@ class FootLoads:
     def offsets(
         self, valid: ValidReadings, commanded: list[Vector], state: GaitState, dt: float, *, out: Sequence[int]
     ) -> Float[np.ndarray, "legs"] | None:
-        """Return the upward offsets of compliant feet by measured forces, or by joint torques [m]; None of stiff ones.
+        """Return the upward offsets of compliant feet, from measured forces or joint torques [m]; None for stiff feet.
 
         The zero offsets of load cells are learnt from feet in the air.
 
@@ -95,7 +95,7 @@ class FootLoads:
         commanded : list of (coxa, femur, tibia)
             Joint angles that were commanded in the last tick [rad].
         state, dt, out : GaitState, float, sequence of int
-            The gait state; length of the tick [s]; legs that are taken out of the gait: they bear no load.
+            The gait state; length of the tick [s]; legs taken out of the gait, which bear no load.
         """
         if valid.forces is not None:
             self._learn_zeros(valid.forces, state, dt)
@@ -113,7 +113,7 @@ class FootLoads:
         return self._filter.step(errors, dt)
 
     def _learn_zeros(self, forces: Sequence[Vector | None], state: GaitState, dt: float) -> None:
-        """Learn the zero offsets of the load cells of feet that swing: these may meet an obstacle, but not for long."""
+        """Learn load cells' zero offsets from swinging feet, in bounded steps: a foot may briefly meet an obstacle."""
         most, share = _MOST_OFFSET * self._weight, min(_RATE * dt, 1.0)
         for leg, (force, on, phase) in enumerate(zip(forces, state.down, state.swing_phase, strict=True)):
             if force is not None and not on and _RISEN < phase < _LANDS:

@@ -1,4 +1,4 @@
-"""Contacts of the feet by the measured joint angles: legs that the ground pushes do not follow their commands."""
+"""Contacts of the feet, from measured joint angles: legs that the ground pushes do not follow their commands."""
 
 from __future__ import annotations
 
@@ -15,41 +15,41 @@ from tarsus.robot.robot import Robot
 
 __all__ = ["JointContacts"]
 
-# Swing phases between which a foot is in the air, and learnt from; from the last one on it lands.
+# Swing phases between which a foot is in the air, and its leg learnt from; swing phase from which on a foot lands.
 _CLEAR, _DOWNWARD, _LANDING = 0.12, 0.45, 0.55
-# Torques on the femur over the load of all legs: of a foot that lands on the ground, of one that stands, and of a
-# rising one that an obstacle stops. A foot that bears little stands: taken for one that hangs, it holds up the walk.
+# Torque on the femur above which a foot is in contact, over the load of all legs: of a landing foot, of a standing one,
+# and of a rising one stopped by an obstacle. A standing foot with little load counts: else it would delay the walk.
 _CONTACT, _STANDS, _OBSTACLE = 0.12, -0.02, 0.3
-# The torque of a foot that stands until it has borne more than the second for the third [s]: before, it may be over a
-# hole.
+# That torque of a foot new in its stance: the first, until it has borne more than the second for the third in all [s];
+# before, it may be over a hole.
 _NEW, _BORNE, _LONG = 0.06, 0.15, 0.03
-# Share of the torque that drives a joint by which the expected one may be wrong.
+# Uncertainty of the expected torque, as a share of the torque that drives the joint.
 _UNSURE = 0.1
-# From a command to the servo's effect: at first, at least, of servos that are stiffer than the file's, and at most [s];
-# how fast it, the mean of free swings and the load are learnt [1/s]; and the square of joint speeds below which that
-# tells little of it [rad^2/s^2].
+# Lag from a command to the servo's effect: first guess; least, of servos stiffer than the file's; greatest [s]. How
+# fast it is learnt; how fast the mean of free swings and the load are learnt [1/s]; square of joint speeds below which
+# a swing tells little of the lag [rad^2/s^2].
 _LAG, _LEAST_LAG, _LONGEST_LAG, _RATE, _MEAN_RATE, _SLOW = 0.005, -0.01, 0.1, 2.0, 5.0, 2.0
-# Torques left over in free swing, over the load, below which servos are familiar and above which they are not; how
-# much faster these are learnt.
+# Residual torque in free swing, over the load, below which servos become familiar, and above which they no longer are;
+# factor by which unfamiliar servos are learnt faster.
 _FAMILIAR, _STRANGE, _FASTER = 0.1, 0.15, 3.0
-# Load of all legs above which contacts are known, over weight times length of femur and tibia; how long it may be less
-# than half of the learnt one [s]: then something else bears the robot, or what was learnt is wrong.
+# Least load of all legs for contacts to be known, over weight times length of femur and tibia; how long the load may be
+# less than half the learnt one [s]: after that, something else bears the robot, or what was learnt is wrong.
 _LEAST_LOAD, _UNBORNE = 0.1, 0.5
-# Step of the integration, and for how long expected angles are kept [s].
+# Step of the integration, and how long expected angles are kept [s].
 _STEP, _KEPT = 0.0025, 0.25
 
 
 class JointContacts:
-    """Estimates contacts by the torques of the ground on the femur joints: by what these are off.
+    """Estimates contacts from the torques of the ground on the femur joints, seen in the joints' angle errors.
 
-    Each femur is expected to follow as servos of the robot's file do without load: position control within torque and
-    speed, dead band, inertia of rotor and links, and a lag that is learnt. What is left over, measured less expected
-    angle, times the stiffness is the torque of the ground and of the leg's weight. It is compared with that of the same
-    leg in free swing, which takes care of offsets of horns, and with the load of the standing legs. The tibia tells
-    less: its torque changes sign with the direction of the force.
+    Each femur is expected to follow its commands as the servo in the robot's file does without load: position control
+    within limits of torque and speed, dead band, inertia of rotor and links, and a lag that is learnt. The residual,
+    measured less expected angle, times the stiffness, is the torque of the ground and of the leg's weight. It is
+    compared with that of the same leg in free swing, which cancels offsets of servo horns, and with the load of the
+    standing legs. The tibia tells less: its torque changes sign with the direction of the force.
 
-    Nothing is known until free swings have followed what is expected and the legs have borne the robot; ideal and
-    emulated servos never show that they do. Where the legs bear less than half of the load for longer than steps take,
+    Contacts are unknown until free swings have matched the expected ones and the legs have borne the robot, which never
+    shows with ideal and emulated servos. Where the legs bear less than half the learnt load for longer than steps take,
     what was learnt is forgotten and learnt anew, and the walk goes on without contacts.
 
     Parameters
@@ -60,7 +60,7 @@ class JointContacts:
     Attributes
     ----------
     lag : float
-        From a command to its effect, as learnt [s].
+        Learnt lag from a command to its effect [s].
 
     Raises
     ------
@@ -72,27 +72,27 @@ class JointContacts:
         springs = JointSprings.of(robot)
         lengths, mass = np.asarray(robot.geometry.femur), np.asarray(robot.link_mass)[:, 1:].T
         com = np.asarray(robot.link_com)[:, 1:].T
-        # The shank hangs down or outwards.
+        # About the femur axis, with the shank at a right angle to the femur.
         links = mass[0] * com[0] ** 2 + mass[1] * (lengths**2 + com[1] ** 2)
         inertia = springs.rotor_inertia[:, 1] + links
-        # Moments of the links' weights on a level femur and shank.
+        # Moments of the links' weights on the femur joint, for a level femur and for a level shank [N m].
         near, far = STANDARD_GRAVITY * (mass[0] * com[0] + mass[1] * lengths), STANDARD_GRAVITY * mass[1] * com[1]
         self._moments = near.tolist(), far.tolist()
         stiffness = springs.stiffness[:, 1]
         self._rates, self._stiffness = (stiffness / inertia, springs.damping[:, 1] / inertia), stiffness.tolist()
         self._columns = springs.stall_torque[:, 1] / stiffness, springs.dead_band[:, 1], stiffness
-        # Of each femur: what a step needs; angle, speed and target; expected angles and torques after each step.
+        # Length of a step [s]; of each femur: its constants; angle, speed and target; expectations after each step.
         self._step, self._servos, self._state = 0.0, list[tuple[float, ...]](), list[tuple[float, float, float]]()
         self._expected = deque[list[tuple[float, float]]]()
         longest = float((lengths + np.asarray(robot.geometry.tibia)).max())
         self._least = _LEAST_LOAD * known_weight(robot) * longest
         self.lag, self._familiar, self._unborne = _LAG, False, 0.0
         self._forget()
-        # For how long each foot that should stand has borne load [s].
+        # How long each foot has borne load in its present stance [s].
         self._borne = [2 * _LONG] * robot.legs
 
     def contacts(self, valid: ValidReadings, commanded: list[Vector], state: GaitState, dt: float) -> list[bool] | None:
-        """Return which feet touch the ground; None where nothing is known.
+        """Return which feet touch the ground; None where contacts are unknown.
 
         Parameters
         ----------
@@ -139,14 +139,14 @@ class JointContacts:
         return touching
 
     def _forget(self) -> None:
-        """Forget load, torques left over in free swing and their mean [N m]; the lag is kept."""
+        """Forget the load, the residual torque of free swings and each leg's mean torque [N m]; keep the lag."""
         self._load, self._left, self._mean = 0.0, self._least, [0.0] * len(self._stiffness)
         self._familiar, self._unborne = False, 0.0
 
     def _learn(self, free: list[int], off: list[float], speeds: list[float], dt: float) -> None:
-        """Learn lag and mean torque of legs that swing freely, at these speeds of their femurs [rad/s]."""
-        # The further it is off, the less is it a familiar servo that is learnt of. Of another one more is learnt, as a
-        # lag that is far from the first guess would never be found, but no more than of a foot that is caught.
+        """Learn the lag and the mean torques from legs that swing freely, at these speeds of their femurs [rad/s]."""
+        # With familiar servos, a large torque is a disturbance and counts for less. With unfamiliar ones it counts in
+        # full, or a lag far from the first guess would never be found. Both are limited to that of a caught foot.
         load, rate = max(self._load, self._least), dt * (_RATE if self._familiar else _FASTER * _RATE)
         product = square = 0.0
         off = [min(max(torque, -_OBSTACLE * load), _OBSTACLE * load) for torque in off]
@@ -158,7 +158,7 @@ class JointContacts:
         self._left += rate * (sum(abs(off[leg]) for leg in free) / len(free) - self._left)
 
     def _follow(self, commanded: list[float], dt: float) -> None:
-        """Take note of the angles after a tick in which free legs follow their commands."""
+        """Integrate the angles that the femurs of free legs have as they follow their commands for a tick."""
         steps = max(round(dt / _STEP), 1)
         step = dt / steps
         if step != self._step:

@@ -1,4 +1,4 @@
-"""Leg odometry: how far the body is behind where it is commanded to be, by the measured angles of the standing legs."""
+"""Leg odometry: how far the body is behind its commanded place, from the measured angles of the standing legs."""
 
 from __future__ import annotations
 
@@ -14,27 +14,27 @@ from tarsus.robot.robot import Robot
 
 __all__ = ["CommandedMotion", "LegOdometry"]
 
-# Speed that makes up for what is missing, over that [1/s], and its greatest share of the commanded speed.
+# Gain from lost way to the speed that makes up for it [1/s]; greatest value of that speed, over the commanded one.
 _GAIN, _MOST = 1.5, 0.25
-# What is missing for longer than this speed lasts is given up [s].
+# Greatest lost way that is kept, as the time that it takes at the commanded speed [s]; more is given up.
 _MEMORY = 0.3
-# A foot that slides faster slips [m/s].
+# Speed above which a sliding foot slips [m/s], and the cause that is then reported.
 _SLIPS, _CAUSE = 0.03, "the foot slips"
-# Time over which slip is averaged [s], and the fewest feet of which some may slip against others.
+# Time over which slip is averaged [s]; fewest standing feet among which slip can be told.
 _SLIP_TIME, _LEAST_FEET = 0.2, 3
 
 
 class CommandedMotion(NamedTuple):
-    """How the body is to move over its standing feet since the last look, in the heading frame.
+    """How the body was to move over its standing feet since the last look, in the heading frame.
 
     Attributes
     ----------
     velocity : complex
         Velocity of the walk [m/s].
     moved, turned : complex, float
-        Way of the body [m], with its pose and sway; by how much the heading frame turns [rad].
+        Displacement of the body, that of its pose and sway included [m]; angle by which the heading frame turns [rad].
     yaw : float
-        Of the body in the heading frame [rad].
+        Yaw of the body in the heading frame [rad].
     """
 
     velocity: complex
@@ -44,10 +44,10 @@ class CommandedMotion(NamedTuple):
 
 
 class LegOdometry:
-    """Compares the commanded motion of the body with that over the feet that stand, by their measured joint angles.
+    """Compares the body's commanded motion with its motion over the standing feet, from measured joint angles.
 
-    Legs give way when load shifts to them, uphill and downhill always to the same side: without a correction the robot
-    covers less or more of the way than commanded.
+    Legs yield when load shifts to them; uphill and downhill, they always do so to the same side. Without a correction,
+    the robot covers less or more of its way than commanded: the difference is the lost way.
 
     Parameters
     ----------
@@ -57,9 +57,9 @@ class LegOdometry:
     Attributes
     ----------
     behind : complex
-        Where the body should be, as seen from where it is, in the heading frame [m].
+        Lost way: from where the body is to where it should be, in the heading frame [m].
     slip : list of float
-        How fast each standing foot slides, as far as it differs from the others [m/s].
+        Speed at which each standing foot slides, relative to the others [m/s].
     """
 
     def __init__(self, robot: Robot) -> None:
@@ -75,13 +75,13 @@ class LegOdometry:
         return [Limitation(kind=kind, cause=_CAUSE, leg=name, granted=slip, bound=_SLIPS)] if slip > _SLIPS else []
 
     def forget(self) -> None:
-        """Forget what is missing, where the feet were, and that they slip: the robot is carried."""
+        """Forget the lost way, where the feet were, and their slip, as for a robot that is carried."""
         self.behind, self.slip, self._slides = 0j, [0.0] * len(self._mounts), [0j] * len(self._mounts)
-        # Where the feet were that stood, and the inclination of their tibiae.
+        # Where the feet that bore load were [m], and the inclination of their tibiae [rad].
         self._before = dict[int, tuple[complex, float]]()
 
     def step(self, valid: ValidReadings, bears: Sequence[int], commanded: CommandedMotion, dt: float) -> complex:
-        """Return the velocity that makes up for what is missing, in the heading frame [m/s].
+        """Return the velocity that makes up for lost way, in the heading frame [m/s].
 
         Parameters
         ----------
@@ -90,7 +90,7 @@ class LegOdometry:
         bears : sequence of int
             Legs whose feet bear load.
         commanded, dt : CommandedMotion, float
-            How the body is to move; time since the last look [s].
+            How the body was to move; time since the last look [s].
         """
         measured = [each for each in valid.joint_angles or () if each is not None]
         if len(measured) < len(self._mounts):
@@ -106,7 +106,7 @@ class LegOdometry:
             rise = rotation[2][0] * direction.real + rotation[2][1] * direction.imag
             self._before[leg] = feet[leg], femur + tibia + rise
             if leg in before:
-                # The centre of a ball moves with the body as the ball rolls.
+                # As a foot's ball rolls, its centre moves along with the body.
                 then, was = before[leg]
                 rolled = radius * (was - self._before[leg][1]) * direction * cmath.exp(1j * yaw)
                 over_feet[leg] = then - feet[leg] + rolled
@@ -114,7 +114,7 @@ class LegOdometry:
         if over_feet:
             moved = sum(over_feet.values()) / len(over_feet)
             self._note_slip(feet, {leg: over - moved for leg, over in over_feet.items()}, dt)
-            # Feet whose middle is beside the body move aside under it as it turns.
+            # Where the middle of the feet is beside the body's origin, the body's turn displaces it.
             passed = 1j * commanded.turned * places / len(over_feet)
             most = speed * _MEMORY
             self.behind += commanded.moved + passed - moved
@@ -123,7 +123,7 @@ class LegOdometry:
         return wanted * min(1.0, most / max(abs(wanted), 1e-12))
 
     def feet_off_commanded(self, legs: list[int], valid: ValidReadings, commanded: list[Vector]) -> dict[int, Vector]:
-        """Return how far feet are from where they are commanded, of those of some legs whose angles are measured.
+        """Return how far the feet of legs are from where they are commanded, as far as their angles are measured.
 
         Parameters
         ----------
@@ -135,7 +135,7 @@ class LegOdometry:
         Returns
         -------
         dict of int to (x, y, z)
-            By leg, in the body's frame [m].
+            Measured less commanded position of the foot by leg, in the body's frame [m].
         """
         measured = valid.joint_angles
         if not (legs and measured):
@@ -146,7 +146,7 @@ class LegOdometry:
         return {leg: off[leg] for leg in legs if measured[leg] is not None}
 
     def _note_slip(self, feet: list[complex], moved: dict[int, complex], dt: float) -> None:
-        """Take note of what the motion over each foot differs by from that of a body that turns over all of them."""
+        """Update each foot's slip: how its motion differs from that of a body that turns over all feet."""
         slides, share = [0j] * len(self.slip), min(dt / _SLIP_TIME, 1.0)
         if len(moved) >= _LEAST_FEET:
             middle = sum(feet[leg] for leg in moved) / len(moved)
@@ -155,6 +155,6 @@ class LegOdometry:
             turned /= sum(abs(place) ** 2 for place in places.values())
             for leg, place in places.items():
                 slides[leg] = (moved[leg] - 1j * turned * place) / dt
-        # The noise of joint angles goes to and fro.
+        # Averaging cancels the noise of joint angles, which changes sign.
         self._slides = [mean + share * (now - mean) for mean, now in zip(self._slides, slides, strict=True)]
         self.slip = [abs(mean) for mean in self._slides]

@@ -16,7 +16,7 @@ __all__ = ["as_bool", "as_items", "as_number", "as_vector"]
 
 
 def as_number(value: Any) -> float:
-    """Return a number of Python or NumPy as a float; NaN for anything else, bools included."""
+    """Return a Python or NumPy number as a float; NaN for anything else, bools included."""
     kind = type(value)
     if kind is float:
         return float(value)
@@ -29,7 +29,7 @@ def as_number(value: Any) -> float:
 
 
 def as_bool(value: Any) -> bool | None:
-    """Return a bool of Python or NumPy, or a number that is 0 or 1, as a bool; None for anything else."""
+    """Return a Python or NumPy bool, or a number that is 0 or 1, as a bool; None for anything else."""
     if issubclass(type(value), bool | np.bool_):
         return bool(value)
     number = as_number(value)
@@ -44,7 +44,7 @@ def as_items(value: Any, *shapes: tuple[int, ...]) -> Sequence[Any] | None:
     value : anything
         Expected: a list, tuple or array.
     *shapes : tuple of int
-        Shapes accepted of an array; a list or tuple needs the length of the first one, whatever its items are.
+        Shapes that an array may have; a list or tuple needs the length of the first one, whatever its items are.
     """
     try:
         if issubclass(type(value), list | tuple):

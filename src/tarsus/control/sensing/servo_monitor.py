@@ -1,4 +1,4 @@
-"""Servo monitor: finds servos that do not follow their commands, by the measured joint angles."""
+"""Servo monitor: finds servos that do not follow their commands, from measured joint angles."""
 
 from __future__ import annotations
 
@@ -17,38 +17,39 @@ if TYPE_CHECKING:
 
 __all__ = ["FailedJoints", "ServoMonitor"]
 
-# How often joints are looked at, but for rounding [s].
+# Time between looks at the joints, less a margin for rounding [s].
 _PERIOD = 0.04 * (1 - 1e-6)
-# A joint may lag behind its command for so long [s].
+# Greatest time by which a joint may lag behind its command [s].
 _LAG = 0.15
-# Error beyond which a servo gives more than its stall torque, if it works [rad]. Hobby servos give it at 0.1 rad.
+# Error threshold, above the error at which a working servo gives its stall torque: 0.1 rad for hobby servos [rad].
 _ERROR = 0.15
-# The same of a servo that gives less than this share of its stall torque, where that is measured [rad].
+# Error threshold of an idle servo [rad]; share of its stall torque below which it is idle, where torque is measured.
 _IDLE_ERROR, _IDLE = 0.07, 0.3
-# Speed towards its command of a joint whose servo works, whatever torque it gives at that [rad/s].
+# Speed of a joint towards its command above which its servo works, whatever its torque [rad/s].
 _MOVES = 1.0
-# How long a joint has to be off by this error until it has failed, and the time in which half of it is forgotten [s]. A
-# greater error counts for more, by its square and up to these factors: where the torque is not measured, and of an idle
-# servo. One that pulls works: its leg is caught, or lies on an edge.
+# How long a joint has to be off by its threshold to have failed, and the half-life of this evidence [s]. A greater
+# error counts for more, by its square and up to these factors: where torque is not measured, and of an idle servo. A
+# servo that pulls works: its leg is caught, or lies on an edge.
 _FAILED_AFTER, _MEMORY = 1.5, 2.0
 _MOST_WEIGHT, _MOST_IDLE = 6.0, 15.0
 # Index of the femur joint.
 _FEMUR = 1
-# Share that counts where the foot touches the ground, which may stall the servo, and no torque is measured.
+# Share of evidence that counts where no torque is measured and the foot touches the ground, which may stall the servo.
 _STALLED = 0.2
-# The same of a coxa or tibia where neither torque nor touch is known.
+# That share for a coxa or tibia where neither torque nor contact is known.
 _MAY_BE_STALLED = 0.5
-# Where neither torque nor touch tells: error of a femur that the ground has pushed up, by the second [rad], more than
-# nearly any that holds on, and the greatest factor then; what counts at most of one that is held up, each time until
-# its foot touches: its leg may lie on an edge. Without contacts, the ground may stall it.
+# For a femur above its command, torque not measured and its foot not known to touch. It gives way to the ground beyond
+# the first error and the second rise [rad], more than nearly any that works; the third is the greatest factor then, if
+# contacts are known. Otherwise its leg may lie on an edge, and at most the fourth [s] counts until its foot touches; or
+# the ground may stall it, if contacts are unknown.
 _GIVES_WAY, _PUSHED, _MOST_GIVING_WAY, _RAISED = 0.6, 0.3, 30.0, 0.8
-# A joint whose command moves by so much within a time [rad], [s], and that moves by less than this share of it, is
-# stuck; it has failed once that is so twice in a row.
+# A joint is stuck if its command moves by more than the first [rad] in the second [s], and the joint by less than the
+# third, a share of that. The fourth is the evidence each time: a joint has failed once stuck twice in a row.
 _COMMANDED, _WITHIN, _SHARE, _ONCE = 0.15, 1.0, 0.4, 1.0
 
 
 class FailedJoints(UserDict[int, int]):
-    """Legs with a joint that has failed, and the joint.
+    """Legs with a failed joint, by index, and the index of that joint.
 
     Parameters
     ----------
@@ -58,7 +59,7 @@ class FailedJoints(UserDict[int, int]):
     Raises
     ------
     InputError
-        If the robot has no such leg or joint, as it is set.
+        If a leg or joint is set that the robot does not have.
     """
 
     def __init__(self, legs: int) -> None:
@@ -77,10 +78,10 @@ class FailedJoints(UserDict[int, int]):
 class ServoMonitor:
     """Compares measured joint angles with those that were commanded a moment ago.
 
-    A servo that is loaded gives way, and one that is slow lags behind. One that is dead, limp or stuck is off by more
-    than its stall torque explains, for longer than any lag; the more it is off, the sooner it is found. The ground may
-    stall a servo that works. Its torque tells, where that is measured: such a servo pulls, and is found only if its
-    joint does not move with its commands. Otherwise, contact does: it presses its foot on the ground.
+    A loaded servo yields, and a slow one lags. A dead, limp or stuck servo is off by more than its stall torque
+    explains, for longer than any lag; the greater its error, the sooner it is found. The ground may stall a working
+    servo. Where torque is measured, it shows that such a servo pulls; it is then found only if its joint does not move
+    with its commands. Otherwise contact shows that it presses its foot on the ground.
 
     Parameters
     ----------
@@ -90,35 +91,35 @@ class ServoMonitor:
     Attributes
     ----------
     failed : FailedJoints
-        Legs with a joint that has failed, and the joint.
+        Legs with a failed joint, and that joint.
     """
 
     def __init__(self, stall_torque: Float[np.ndarray, "legs 3"]) -> None:
         self._stall_torque, self.failed = stall_torque, FailedJoints(len(stall_torque))
         # Durations and commands of the last ticks, and the sum of the durations [s].
         self._commands: deque[tuple[float, Float[np.ndarray, "legs 3"]]] = deque()
-        # It looks at once, and so in the ticks in which the body is looked at: the others are short.
+        # The first look is immediate, and so in the same ticks as the looks at the body: all other ticks are short.
         self._span = self._time = self._since = self._wait = 0.0
         self._evidence: Float[np.ndarray, "2 legs 3"] | None = None
-        # Legs whose feet touched as joints were last looked at.
+        # Legs whose feet touched the ground at the last look.
         self._touched = set[int]()
-        # Of femurs that were off when joints were last looked at: what has counted since the foot touched or the femur
-        # was not held up, and its lowest angle since [rad].
+        # Of femurs that were off at the last look: evidence since the foot last touched or the femur was not above its
+        # command [s], and the femur's lowest angle since [rad].
         self._raised = dict[int, tuple[float, float]]()
-        # Least and greatest of what was measured and commanded, since joints were last looked at for whether they are
-        # stuck.
+        # Least and greatest of the measured and of the commanded angles since joints were last checked for being stuck
+        # [rad].
         self._ranges: tuple[Float[np.ndarray, "2 legs 3"], Float[np.ndarray, "2 legs 3"]] | None = None
         self._last: Float[np.ndarray, "legs 3"] | None = None
 
     def step(self, commanded: Float[np.ndarray, "legs 3"], valid: ValidReadings, dt: float) -> None:
-        """Take in what is measured in a tick.
+        """Take in the readings of a tick.
 
         Parameters
         ----------
         commanded : array, shape (legs, 3)
-            Commanded until now [rad].
+            Joint angles commanded until now [rad].
         valid, dt : ValidReadings, float
-            The readings; legs without measured joint angles are not monitored; time since the last tick [s].
+            The readings, of which legs without joint angles are not monitored; time since the last tick [s].
         """
         self._commands.append((dt, commanded))
         self._span += dt
@@ -132,17 +133,17 @@ class ServoMonitor:
             self._since, self._wait = 0.0, _PERIOD
 
     def _look(self, commanded: Float[np.ndarray, "legs 3"], valid: ValidReadings, dt: float) -> None:
-        """Change the evidence against joints by their errors; those of legs that are not measured are NaN."""
+        """Update the evidence against joints by their errors, which are NaN for legs that are not measured."""
         measured = np.array([leg or (math.nan,) * 3 for leg in valid.joint_angles or ()])
         last, self._last = measured if self._last is None else self._last, measured
         touched, self._touched = self._touched, {leg for leg, touches in enumerate(valid.contacts or ()) if touches}
-        # A foot that presses on moving ground loses touch for a moment, in which its servo is stalled as before.
+        # A foot that presses on moving ground loses contact for a moment, while its servo remains stalled.
         touching = touched | self._touched
         raised, self._raised = self._raised, {}
         stuck = self._stuck(np.stack([measured, commanded]), valid, dt)
         if self._evidence is not None:
             self._evidence *= 0.5 ** (dt / _MEMORY)
-        # No joint is further from all recent commands than from the last one.
+        # A joint's error against all recent commands is at most that against the last one.
         off = np.abs(measured - commanded)
         if stuck is None and not (off > (_ERROR if self._evidence is None else _IDLE_ERROR)).any():
             return
@@ -169,7 +170,7 @@ class ServoMonitor:
             self._evidence[1] += _ONCE * stuck
         for _, leg, joint in np.argwhere(self._evidence > _FAILED_AFTER).tolist():
             self.failed.setdefault(leg, joint)
-        # What tells against a leg that has failed does not count if it is to be used again.
+        # Evidence against a failed leg is dropped, so that it does not count should the leg be used again.
         self._evidence[:, list(self.failed)] = 0.0
 
     def _torque(self, valid: ValidReadings, leg: int, joint: int) -> float:
@@ -180,9 +181,9 @@ class ServoMonitor:
     def _stuck(
         self, angles: Float[np.ndarray, "2 legs 3"], valid: ValidReadings, dt: float
     ) -> Bool[np.ndarray, "legs 3"] | None:
-        """Return which joints have not moved with their commands, at the end of a time in which any is so.
+        """Return which joints have not moved with their commands, at the end of a period in which some have not.
 
-        `angles` are those measured and those commanded [rad].
+        `angles` are the measured and the commanded ones [rad].
         """
         low, high = self._ranges or (angles, angles)
         self._ranges = low, high = np.minimum(low, angles), np.maximum(high, angles)
@@ -193,7 +194,7 @@ class ServoMonitor:
         with np.errstate(invalid="ignore"):
             stuck: np.ndarray = (wanted > _COMMANDED) & (moved < _SHARE * wanted)
             pressed = np.flatnonzero((stuck & (angles[0] > angles[1]))[:, _FEMUR]).tolist()
-        # The ground may stall a femur that presses its foot down: what it does once that has lifted tells.
+        # The ground may stall a femur that presses its foot down: wait for what it does once the foot has lifted.
         if any(leg in self._touched and self._torque(valid, leg, _FEMUR) > _IDLE for leg in pressed):
             return None
         self._ranges, self._time = None, 0.0
@@ -203,12 +204,12 @@ class ServoMonitor:
 def _of_femur(
     raised: tuple[float, float] | None, angle: float, error: float, dt: float, *, up: bool, touches: bool | None
 ) -> tuple[float, tuple[float, float]]:
-    """Return for how much an error of a femur counts, and what is kept of it; the ground may hold the leg up.
+    """Return the evidence of a femur's error [s] and what is kept for the next look; the ground may hold the leg up.
 
     Parameters
     ----------
     raised : (float, float) or None
-        What was kept at the last look; None if the femur was not off.
+        What was kept at the last look: evidence [s] and lowest angle [rad]; None if the femur was not off.
     angle, error, dt : float
         Measured angle [rad]; error [rad]; time since the last look [s].
     up, touches : bool, bool or None
@@ -225,5 +226,5 @@ def _of_femur(
 
 
 def _over(error: float, bound: float, *, most: float) -> float:
-    """Return the square of an error over its bound, up to a greatest one; 0 below the bound."""
+    """Return the square of an error over its bound, at most `most`; 0 below the bound."""
     return min((error / bound) ** 2, most) if error > bound else 0.0

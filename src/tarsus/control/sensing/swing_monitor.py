@@ -1,4 +1,4 @@
-"""Swing monitor: finds legs that are stopped on their way, by the measured angles of their coxa joints."""
+"""Swing monitor: finds legs that are stopped in their swing, from the measured angles of their coxa joints."""
 
 from __future__ import annotations
 
@@ -10,35 +10,35 @@ from tarsus.control.readings import ValidReadings
 __all__ = ["USUAL_LAG", "SwingMonitor"]
 
 USUAL_LAG = 0.03
-"""Lag of the joints of usual servos behind their commands [s]."""
+"""Usual lag of servo-driven joints behind their commands [s]."""
 
-# Angle by which a joint is behind that is stopped [rad], besides so many times the usual one; that at first [rad], and
-# how fast it is learnt [1/s].
+# A joint is stopped if it is behind by more than the first [rad] plus the second times its usual angle behind; first
+# guess of that usual angle [rad], and how fast it is learnt [1/s].
 _BEHIND, _TIMES, _AT_FIRST, _MEAN_RATE = 0.02, 3.0, 0.02, 1.0
-# Longest lag of a joint, from its command to the reading [s]; how fast it is learnt [1/s]; and the square of joint
-# speeds below which they tell little of it [rad^2/s^2].
+# Longest lag of a joint, from its command to the reading [s]; how fast the lag is learnt [1/s]; square of joint speeds
+# below which a joint tells little of it [rad^2/s^2].
 _LONGEST_LAG, _RATE, _SLOW = 0.12, 5.0, 0.5
-# How fast the mean lag follows [1/s]: the first guess, the longest one, should not count.
+# How fast the mean lag follows the learnt one [1/s]: slowly, as the first guess, the longest lag, should not count.
 _LAG_RATE = 0.3
-# Rounding of a time [s].
+# Tolerance for the rounding of times [s].
 _ROUNDING = 1e-9
 
 
 class SwingMonitor:
-    """Compares measured angles of swinging legs with those commanded before a lag, which is learnt.
+    """Compares measured angles of swinging legs with those commanded a lag earlier; the lag is learnt.
 
-    A servo is commanded in steps, and its joint evens them out: expected is the mean of what was commanded in a time as
-    long as the longest of the last ticks. Where ticks differ, that moves evenly.
+    A servo is commanded in steps, which its joint smooths: the expected angle is the mean of the commands in a window
+    as long as the longest of the last ticks. It moves evenly even where ticks differ in length.
 
     Attributes
     ----------
     lag : float
-        From a command to its reading, mean of what has been learnt [s]; 0 where no angles are measured.
+        Lag from a command to its reading, mean of the learnt one [s]; 0 where no angles are measured.
     """
 
     def __init__(self) -> None:
         self.lag, self._lag, self._usual = 0.0, _LONGEST_LAG, _AT_FIRST
-        # What was commanded, last first, and for how long [s].
+        # Commands, latest first, and how long each lasted [s].
         self._commanded, self._times = deque[list[float]](), deque[float]()
 
     def step(self, commanded: list[float], valid: ValidReadings, dt: float, down: Sequence[bool]) -> list[int]:
@@ -56,7 +56,7 @@ class SwingMonitor:
             return stopped
         lag, usual, held = self._lag, self._usual, self._before(window)
         newer, older = held[0][1], held[-1][1]
-        # Where few joints have been measured, what is learnt of each counts for the others.
+        # Where few joints are measured in a tick, what is learnt from each counts for the others, too.
         dt *= len(down) / max(len(down) - len(valid.predicted), 1)
         for leg, angles in enumerate(valid.joint_angles):
             if angles is None or down[leg] or leg in valid.predicted:
@@ -65,7 +65,7 @@ class SwingMonitor:
             for time, command in held:
                 turned += time * command[leg]
             behind = turned / window - angle
-            # Within the lag, a leg may have turned around.
+            # Whether the leg is still commanded onwards: within the lag, its motion may have reversed.
             still = (commanded[leg] - angle) * speed > 0.0
             if still and behind * speed > (_BEHIND + _TIMES * usual) * abs(speed):
                 stopped.append(leg)
@@ -78,7 +78,7 @@ class SwingMonitor:
         return stopped
 
     def _note(self, commanded: list[float], dt: float) -> float:
-        """Note what was commanded, and return the longest of the last ticks; 0 as long as these are too few [s]."""
+        """Note a command, and return the longest of the last ticks; 0 as long as these are too few [s]."""
         commands, times = self._commanded, self._times
         commands.appendleft(commanded)
         times.appendleft(dt)
@@ -92,7 +92,7 @@ class SwingMonitor:
         return window
 
     def _before(self, window: float) -> list[tuple[float, list[float]]]:
-        """Return what was commanded in that time before the lag, last first, and for how long [s]."""
+        """Return the commands in the window that ends a lag ago, latest first, each after its time there [s]."""
         held, end, lag, oldest = list[tuple[float, list[float]]](), 0.0, self._lag, self._lag + window + _ROUNDING
         for time, command in zip(self._times, self._commanded, strict=True):
             start, end = end, end + time

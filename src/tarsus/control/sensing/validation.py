@@ -16,9 +16,9 @@ from tarsus.robot.robot import Robot
 
 __all__ = ["ReadingsValidator", "rejections"]
 
-# Greatest age of a reading [s], or in ticks where these are long.
+# Greatest age of a reading [s]; in ticks instead, where these are long.
 _MOST_AGE, _MOST_TICKS = 0.1, 4.0
-# Ages of the joints of each leg, where they are given one by one.
+# Ages of each leg's joints [s]; None unless they are given one by one.
 _Ages: TypeAlias = tuple[Vector, ...] | None
 
 _NO_READINGS, _NONE = ValidReadings(), frozenset[int]()
@@ -31,8 +31,8 @@ class ReadingsValidator:
 
     A reading is rejected if it does not consist of finite numbers in the right shape, is too old, or lies outside
     the range the robot can measure: for one leg if only that leg's reading is wrong, otherwise the whole channel.
-    After a rejection a channel is accepted again once it has been plausible three times in a row. No content of the
-    fields raises an error.
+    After a rejection a channel is accepted again once it has been plausible three times in a row. Whatever the
+    fields contain, no error is raised.
 
     Parameters
     ----------
@@ -76,7 +76,7 @@ class ReadingsValidator:
             for channel, value in zip(self._channels, values, strict=True)
         ]
         if not ages:
-            # An age that is no number is none.
+            # An empty mapping, which is not a number, means age 0.
             age = max(0.0, as_number(readings.age))
             return ValidReadings._make((*found, age, None, age, age, _NONE, tuple(rejected)))
         given = [name for name, value in zip(CHANNELS, values, strict=True) if value is not None]
@@ -90,7 +90,7 @@ class ReadingsValidator:
         return ValidReadings._make((*found, joint, of_joints, ground, contact, _NONE, tuple(rejected)))
 
     def _young(self, ages: tuple[Vector, ...], most: float, rejected: list[str]) -> list[int]:
-        """Return the legs of which no joint angle is too old."""
+        """Return the legs none of whose joint angles is too old; reject the others."""
         pairs = zip(self._legs, ages, strict=True)
         stale = [_stale(f"joint_angles of {leg}", _oldest(of_leg), most) for leg, of_leg in pairs]
         rejected += filter(None, stale)
@@ -103,10 +103,10 @@ def rejections(valid: ValidReadings) -> list[Limitation]:
 
 
 def _channel_ages(readings: SensorReadings, most: float, *, legs: int) -> tuple[str, dict[str, float], _Ages]:
-    """Return what is wrong with all readings together, "" if nothing is; the ages of single channels; those of joints.
+    """Return what is wrong with the readings as a whole, or ""; the ages of single channels; those of joints.
 
-    Where joints have an age each, that of joint angles is 0, as they are rejected leg by leg, and that of another
-    channel the greatest one.
+    Where each joint has an age, the channel's age is the greatest of them; but that of joint angles is 0, as these are
+    rejected leg by leg.
     """
     if type(readings) is not SensorReadings:
         return "all channels: not of class SensorReadings", {}, None
@@ -130,13 +130,13 @@ def _channel_ages(readings: SensorReadings, most: float, *, legs: int) -> tuple[
 
 
 def _oldest(ages: Iterable[float]) -> float:
-    """Return the greatest age; NaN if one is no number >= 0."""
+    """Return the greatest age; NaN unless all are numbers >= 0."""
     known = list(ages)
     return max(known) if all(age >= 0.0 for age in known) else math.nan
 
 
 def _stale(name: str, age: float, most: float) -> str:
-    """Return what is wrong with an age, "" if it is at most the greatest."""
+    """Return what is wrong with an age; "" if it is from 0 to the greatest one."""
     if 0.0 <= age <= most:
         return ""
     return f"{name}: older than {1e3 * most:.3g} ms" if age > 0 else f"{name}: {_BAD_AGE}"
