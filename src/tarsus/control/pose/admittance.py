@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
 __all__ = ["Admittance", "AdmittanceFilter"]
 
-# Bound of natural frequency and decay rate [rad/s]: far above any servo, far below overflow.
+# Bound on natural frequency and decay rate [rad/s]: far above any servo, far below overflow.
 _FASTEST = 1e6
 
 
@@ -39,7 +39,7 @@ class Admittance:
     mass, damping, stiffness : float
         Virtual mass [kg], damping [N s/m] and stiffness [N/m].
     travel : float
-        Greatest offset [m]; force errors that would exceed it are limited.
+        Greatest offset [m]; force errors are limited so that it is not exceeded.
 
     Raises
     ------
@@ -74,7 +74,7 @@ class Admittance:
 
     @cached_property
     def max_force(self) -> float:
-        """Bound of the force error [N] for which the offset stays within `travel`, however the force varies.
+        """Bound on the force error [N] for which the offset stays within `travel`, however the force varies.
 
         That is `travel` over the integral of the magnitude of the impulse response: ``1 / stiffness``, or if
         underdamped ``coth(pi decay / (2 damped frequency)) / stiffness``.
@@ -121,7 +121,7 @@ class AdmittanceFilter:
     Parameters
     ----------
     admittance, legs : Admittance, int
-        Parameters, the same for each foot; number of feet.
+        Parameters, the same for all feet; number of feet.
 
     Attributes
     ----------

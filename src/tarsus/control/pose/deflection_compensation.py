@@ -21,63 +21,63 @@ if TYPE_CHECKING:
 
 __all__ = ["DeflectionCompensation"]
 
-# How far out and below the foot is from the knee, and from the femur axis [m].
+# Lever arms of a foot: how far it is outward of and below its knee, then outward of and below its femur axis [m].
 _Arms: TypeAlias = tuple[float, float, float, float]
-# How fast the softness is learnt [1/s].
+# How fast the softness is learnt, and the share compensated for and the mean lowering of feet follow [1/s].
 _LEARNING_RATE = 2.0
-# How often it is looked where the feet are, and how soft the joints [s].
+# Time between looks at where the feet are, and how soft the joints [s].
 _PERIOD = 0.035
-# Sum of squares of the femurs' deflections from which on they tell the softness [rad^2].
+# Least sum of squares of the femurs' expected deflections for the softness to be learnt [rad^2].
 _LEAST = 1e-5
-# Share of the deflection that is added: measured forces rise with it.
+# Share of the deflection that is added to the commands: not all, as measured forces rise with it.
 _SHARE = 0.5
-# Friction that holds the feet of loaded legs where it needs no more.
+# Friction coefficient that feet are taken to have: where loaded legs need no more, nothing is compensated for.
 _FRICTION = 0.8
 # How fast the loads follow forces and contacts [1/s]: a foot that lands hard must not be pressed down further.
 _LOAD_RATE = 30.0
-# Share of all load from which on a foot bears load in full.
+# Share of the total load from which on a foot counts as bearing load in full; below, it counts in part.
 _BEARS = 0.2
-# Least number of feet that share the weight by their contacts.
+# Number of feet in contact from which on they bear the whole weight, where forces are not measured.
 _FEWEST = 3
 
 
 class DeflectionCompensation:
-    """Adds to the commands of femur and tibia what vertical forces on the feet turn them.
+    """Adds to the commands of femur and tibia the angles by which vertical forces on the feet deflect them.
 
-    Legs that yield give way outwards: feet that take over load slide, or press against each other through friction.
-    With the deflection for a vertical force in the commands, little horizontal force is left. The stiffness is that of
-    the robot's servos over their softness, which is learnt from the measured angles of the femurs: it is 0 for servos
-    that do not yield. Nothing is added where joint angles are not measured, loads or servos unknown, nor where
+    Loaded legs yield outwards: feet that take over load slide, or press against each other through friction. With the
+    deflection under a vertical force added to the commands, little horizontal force is left. The stiffness is that of
+    the robot's servos over their softness, which is learnt from the measured angles of the femurs; it is 0 for servos
+    that do not yield. Nothing is added where joint angles are not measured, where loads or servos are unknown, or where
     friction holds the feet on the slope under them: compensated legs are stiffer, and lose contact on rough ground.
 
-    The loads are those of measured forces, else the robot's weight is shared out by contacts. Of measured forces only
-    what equilibrium asks for counts: more than three feet press against each other, too, and would do so more and more
-    where commands are compensated by them.
+    The loads come from measured forces; without these, the robot's weight is shared out among feet in contact. Of
+    measured forces, only the part that equilibrium requires counts: more than three feet also press against each other,
+    and would do so ever more if commands were compensated for those forces, too.
 
     Parameters
     ----------
     robot : Robot
-        A single robot. Without masses in its file contacts do not tell its loads.
+        A single robot. Without masses in its file, contacts do not tell the loads.
 
     Attributes
     ----------
     offsets : array, shape (legs, 3), or None
-        What is added to the joint angles [rad]; None as long as that is nothing.
+        Angles that are added to the joint angles [rad]; None until compensation begins.
     lowered : float
-        How much lower the foot is commanded that bears most, on the average [m].
+        Greatest distance by which a foot is commanded lower to compensate, averaged over time [m].
     softness : float
-        Deflection of the femurs over that of the robot's servos under the same forces, 0 to 1.
+        Measured deflection of the femurs over that expected of the robot's servos under the same forces, 0 to 1.
     """
 
     def __init__(self, robot: Robot) -> None:
         self.offsets: Float[np.ndarray, "legs 3"] | None = None
         self.lowered = self.softness = self._share = self._needed = 0.0
-        # Time since it was looked where the feet are [s]; joint angles, lever arms and feet in B then; by a load of 1 N
-        # on each foot, the turns of its joints [rad], and how far it sinks [m].
+        # Time since the last look [s]; joint angles, lever arms and feet in B at that look; under a load of 1 N on each
+        # foot, how far it sinks [m], and how far the joints of its leg turn [rad].
         self._since, self._joints, self._arms = _PERIOD, list[list[float]](), list[_Arms]()
         self._feet, self._sinks = list[tuple[float, float]](), list[float]()
         self._turns: Float[np.ndarray, "legs 3"] = np.zeros((robot.legs, 3))
-        # The loads as they are followed; the centre of mass in B when it was first of use: it moves little [N, m].
+        # Loads, following the measured ones [N]; centre of mass in B when it was first needed, as it moves little [m].
         self._loads, self._centre = [0.0] * robot.legs, list[float]()
         self._robot, self._weight, self._legs = robot, known_weight(robot), list[tuple[float, ...]]()
         if all(all(leg) for leg in robot.servos):
@@ -125,7 +125,7 @@ class DeflectionCompensation:
     def _balanced_loads(
         self, valid: ValidReadings, bears: list[bool], angles: Float[np.ndarray, "legs 3"], dt: float
     ) -> tuple[float, ...]:
-        """Return the loads of the feet; they follow what is measured, and go back to 0 where it is not any more [N].
+        """Return the balanced loads of the feet; they follow the measured ones, and return to 0 where these cease [N].
 
         A leg without joint angles, or without force where other legs have one, bears nothing.
         """
@@ -148,7 +148,7 @@ class DeflectionCompensation:
         return balanced_forces(self._feet, bear, (x, y), total)
 
     def _find_feet(self, joints: list[list[float]]) -> None:
-        """Find where the feet are, and what a load of 1 N on each turns its joints by."""
+        """Find where the feet are, and how far a load of 1 N on each turns its joints."""
         self._joints, self._feet, self._sinks = joints, [], []
         turns: list[tuple[float, float, float]] = []
         self._arms = [_lever_arms(*leg[5:7], *turns[1:]) for leg, turns in zip(self._legs, joints, strict=True)]
@@ -162,7 +162,7 @@ class DeflectionCompensation:
         self._turns = np.array(turns)
 
     def _learn(self, valid: ValidReadings, loads: Sequence[float]) -> None:
-        """Learn the softness: how far the femurs have turned, over how far the servos of the file would be bent."""
+        """Learn the softness: how far the femurs have turned, over how far the servos in the robot's file would."""
         product = square = 0.0
         for leg, angles in enumerate(valid.joint_angles or ()):
             force = valid.forces[leg] if valid.forces else None
@@ -171,7 +171,7 @@ class DeflectionCompensation:
             (coxa, femur, _), (_, _, to_hip, below_hip) = self._joints[leg], self._arms[leg]
             bends = to_hip * loads[leg]
             if force:
-                # The torque that bends the femur is that of the whole force: feet lean against each other.
+                # Not only the vertical force bends the femur, but the whole one: feet press against each other.
                 heading = self._legs[leg][2] + coxa
                 out = force[0] * math.cos(heading) + force[1] * math.sin(heading)
                 bends = to_hip * force[2] + below_hip * out
@@ -182,7 +182,7 @@ class DeflectionCompensation:
             self.softness = min(max(learnt, 0.0), 1.0)
 
     def _needed_friction(self, commanded: Float[np.ndarray, "legs 3"]) -> float:
-        """Return which friction keeps all feet in place under vertical loads: horizontal over vertical force."""
+        """Return the friction coefficient that keeps all feet in place under vertical loads."""
         needed = 0.0
         legs = zip(self._legs, commanded.tolist(), strict=True)
         for (*_, length, tibia, femur_yields, tibia_yields), (_, femur, bend) in legs:
@@ -193,7 +193,7 @@ class DeflectionCompensation:
 
 
 def _lever_arms(femur: float, tibia: float, turned: float, bent: float) -> _Arms:
-    """Return how far out and below the foot is from the knee, and from the femur axis [m]."""
+    """Return how far a foot is outward of and below its knee, then outward of and below its femur axis [m]."""
     knee = cmath.rect(tibia, turned + bent)
     hip = knee + cmath.rect(femur, turned)
     return knee.real, -knee.imag, hip.real, -hip.imag

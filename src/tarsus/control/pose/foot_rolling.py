@@ -1,4 +1,4 @@
-"""Rolling of the foot balls of a live walk: what the legs roll about in a stance."""
+"""Rolling of the spherical feet of a live walk, as their legs turn over them in stance."""
 
 from __future__ import annotations
 
@@ -21,22 +21,22 @@ __all__ = ["FootRolling"]
 # Rotation of the body, and position of its origin [m].
 _Body: TypeAlias = tuple[Rows, Sequence[float]]
 
-# Bandwidth with which other rest footholds, or a leg out of the gait, are followed: within a swing [rad/s].
+# Bandwidth with which changes of rest footholds and of legs out of the gait are followed: within a swing [rad/s].
 _BANDWIDTH = 12.0
 # Keeps quotients finite for a straight leg, and for a foot on its femur axis [m^2].
 _TINY = 1e-12
 
 
 class FootRolling:
-    """Displaces the feet by how far their balls have rolled.
+    """Displaces the feet by the distance that their balls have rolled.
 
     A ball of radius `r` rolls by ``-r`` times the change of its tibia's inclination, along the direction in which the
-    leg points. With the inclination at the rest foothold as the origin, the displacement of the foot is a function of
-    the posture and of the foothold: the same at lift-off and at touchdown, continuous from stance to swing, towards the
-    rest foothold, and zero there. It leaves out that the leg turns while the ball rolls, which is of second order: less
+    leg points. With the inclination at the rest foothold as the origin, the displacement of the foot depends on posture
+    and foothold alone: the same function at lift-off and at touchdown, continuous from stance to swing, towards the
+    rest foothold, and zero there. It neglects that the leg turns while the ball rolls, which is of second order: less
     than 0.3 % of a stroke. Where posture or rest footholds change, the origin follows, so that a foot at rest is at
-    its rest foothold again; that of a foot that stands follows other rest footholds only from its next lift-off on, as
-    its ball would slide.
+    its rest foothold again. The origin of a standing foot follows other rest footholds only from its next lift-off on,
+    as its ball would slide otherwise.
 
     Parameters
     ----------
@@ -46,7 +46,7 @@ class FootRolling:
     Attributes
     ----------
     started : bool
-        Whether there is anything to roll: never for a robot whose feet are points, for others from the first tick on.
+        Whether feet roll: never for a robot whose feet are points, for others from the first tick on.
 
     Notes
     -----
@@ -65,10 +65,10 @@ class FootRolling:
         self._legs: list[tuple[float, ...]] = list(zip(*columns, strict=True))
         # Rest footholds, x and y, and the radius of each ball, 0 for legs out of the gait [m].
         self._goal = np.zeros(3 * robot.legs)
-        # The same, with those at which the feet that stand came down.
+        # The same, but for standing feet with the rest footholds of when they came down.
         self._aim = self._goal
         self._filter = CriticallyDamped.still(self._goal)
-        # The balls, and the posture and rest footholds for which they are.
+        # Result of `balls`, and the posture and rest footholds for which it holds.
         self._balls: list[tuple[float, float]] = []
         self._solved = np.zeros(0), self._filter
 
@@ -82,7 +82,7 @@ class FootRolling:
         rest : complex array, shape (legs,)
             Rest footholds in the heading frame [m].
         out_of_gait, dt : list of int, float
-            Legs that are taken out of the gait: their feet are where they are commanded to be; length of the tick [s].
+            Legs taken out of the gait, whose feet are where they are commanded to be; length of the tick [s].
         down : array of bool, shape (legs,)
             Feet that are not in a swing.
         """
@@ -104,7 +104,7 @@ class FootRolling:
     def balls(self, posture: Float[np.ndarray, "_"]) -> list[tuple[float, float]]:
         """Return each ball's radius, 0 for a leg out of the gait, and the radius times its tibia's inclination at rest.
 
-        Those of a stance that stays the same are not computed again.
+        The result is kept for as long as the stance stays the same.
 
         Parameters
         ----------
@@ -114,7 +114,7 @@ class FootRolling:
         Returns
         -------
         list of (radius, at_rest)
-            For each foot; the inclination is that over the ground at the rest foothold [m].
+            For each foot [m]; the inclination is that of the tibia over the ground, with the foot at its rest foothold.
         """
         if self._solved[0] is posture and self._solved[1] is self._filter:
             return self._balls
@@ -130,7 +130,7 @@ class FootRolling:
     def rolled(
         self, feet: Sequence[Vector], standing: Sequence[float], body: _Body, *, posture: Float[np.ndarray, "_"]
     ) -> list[Vector]:
-        """Return the feet with their balls rolled.
+        """Return the feet, displaced by the rolling of their balls.
 
         Parameters
         ----------
@@ -138,11 +138,11 @@ class FootRolling:
             Where the feet would be as points, in a frame whose z axis is vertical [m].
         standing : sequence of float
             The height in that frame at which each foot stands [m]: how far a foot has rolled does not depend on how
-            high it is lifted, so that it leaves the ground and lands as it stands.
+            high it is lifted, so that rolling is continuous at lift-off and touchdown.
         body : (three rows, (x, y, z))
             Rotation of the body, and position of its origin, in that frame [m].
         posture : array, shape (7,) or more
-            The posture, without what the body moves beyond it, for which a foot at rest is at its rest foothold.
+            The posture without sway and body shift, for which a foot at rest is at its rest foothold.
         """
         legs = zip(feet, self.balls(posture), self._legs_over_ground(feet, standing, body), strict=True)
         found = []
@@ -156,7 +156,7 @@ class FootRolling:
     def _legs_over_ground(
         self, feet: Sequence[Vector], heights: Sequence[float], body: _Body
     ) -> list[tuple[float, float, float, float, float]]:
-        """Return each leg's direction over the ground, its tibia's inclination, and the bend and reach of its knee."""
+        """Return each leg's direction over the ground, its tibia's inclination, and its knee's bend and distance."""
         ((r00, r01, r02), (r10, r11, r12), (r20, r21, r22)), (px, py, pz) = body
         found = []
         for (fx, fy, _), height, leg in zip(feet, heights, self._legs, strict=True):

@@ -1,4 +1,4 @@
-"""Heading feedback: turns the body back by what it has turned more than commanded, by the measured angular rates."""
+"""Heading feedback: turns the body back to its commanded heading, from measured angular rates."""
 
 from __future__ import annotations
 
@@ -8,25 +8,25 @@ from tarsus.control.readings import ValidReadings
 
 __all__ = ["HeadingFeedback"]
 
-# Gain [1/s], greatest rate [rad/s], its greatest change [rad/s^2], and what is made up for at most [rad].
+# Gain [1/s], greatest rate [rad/s], its greatest change [rad/s^2], and greatest heading error that is kept [rad].
 _GAIN, _MOST, _CHANGE, _FARTHEST = 1.0, 0.15, 0.5, 0.5
-# Time in which the difference is forgotten, and in which the offset of the rates is learnt at rest [s].
+# Time constants with which the heading error is forgotten, and with which the rates' offset is learnt at rest [s].
 _MEMORY, _LEARNS = 10.0, 1.0
-# A body at rest turns more slowly than this, offset included [rad/s].
+# A body at rest is measured to turn more slowly than this, the offset of the rates included [rad/s].
 _STILL = 0.02
-# How long rates may be missing until what is made up for is forgotten [s].
+# How long rates may be missing until the heading error is forgotten [s].
 _HOLDS = 0.3
 
 
 class HeadingFeedback:
-    """Keeps the body on its heading: on rough ground feet slip, and the body turns.
+    """Keeps the body on its heading, from which it turns where feet slip on rough ground.
 
     Attributes
     ----------
     behind : float
-        By how much the body has turned less than commanded, to the left [rad].
+        Heading error: by how much less than commanded the body has turned to the left [rad].
     rate : float
-        How fast the body is to turn over its standing feet to make up for that [rad/s].
+        How fast the body is to turn over its standing feet to correct it [rad/s].
     """
 
     def __init__(self) -> None:
@@ -38,13 +38,13 @@ class HeadingFeedback:
         Parameters
         ----------
         valid : ValidReadings
-            The readings; without angular rates for longer than a moment, nothing is made up for.
+            The readings; once angular rates have been missing for longer than a moment, nothing is corrected.
         commanded, dt : float, float
             Rate at which the body is to turn, by the walk and by its pose [rad/s]; time since the last step [s].
         rests : bool
             Whether the robot is to stand still: it does not turn then.
         still : bool
-            Whether neither feet nor body move any more: what is measured then is the offset of the rates.
+            Whether feet and body have stopped moving, so that what is measured is the offset of the rates.
         """
         if valid.angular_rates is None:
             self._unmeasured += dt
@@ -65,5 +65,5 @@ class HeadingFeedback:
         self.rate += min(max(wanted - self.rate, -_CHANGE * dt), _CHANGE * dt)
 
     def forget(self) -> None:
-        """Forget what is missing: the robot is carried."""
+        """Forget the heading error, as for a robot that is carried."""
         self.behind = self.rate = 0.0

@@ -80,7 +80,7 @@ class PoseController:
         sway : tuple of float
             Commanded amplitudes: x, y, z [m], roll, pitch, yaw [rad].
         frequency, beats : float, int
-            Gait cycles per second [1/s]; number of lift-offs per cycle, of legs that lift together.
+            Gait cycles per second [1/s]; number of lift-offs per cycle, where legs that lift together count once.
         """
         before = self.target[SWING_HEIGHT + 1 :]
         if any(sway) or any(before.tolist()):
@@ -97,7 +97,7 @@ class PoseController:
         return max(off[: SWING_HEIGHT + 1]) < _POSTURE_TOLERANCE and max(off[SWING_HEIGHT + 1 :]) < _SWAY_TOLERANCE
 
     def bandwidth(self, value: Float[np.ndarray, "13"]) -> float:
-        """Return the bandwidth at which the body keeps to its greatest speeds from its present posture [rad/s]."""
+        """Return the bandwidth at which the body, from its present posture, keeps to its greatest speeds [rad/s]."""
         if value is self.target:
             return _BANDWIDTH
         distance: list[float] = np.abs(value - self.target).tolist()

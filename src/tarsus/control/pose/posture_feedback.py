@@ -1,4 +1,4 @@
-"""Posture feedback: two slow feedbacks move all standing feet at once, for the body's height and for its tilt."""
+"""Posture feedback: two slow loops move all standing feet at once, for the height of the body and for its tilt."""
 
 from __future__ import annotations
 
@@ -13,24 +13,24 @@ from tarsus.gait.foot_plane import FootPlane
 __all__ = ["BodyMove", "Levelling", "PostureFeedback", "PostureRates"]
 
 Levelling: TypeAlias = Literal["level", "between", "follow"]
-"""The attitude to keep: level, along the slope, or in the middle between both."""
+"""The attitude to keep: level, halfway between level and the slope, or along the slope."""
 
-# How much of the slope the body follows.
+# Share of the slope that the body follows.
 _SHARES = {"level": 0.0, "between": 0.5, "follow": 1.0}
-# Gains [1/s] and greatest rates of height [m/s] and tilt [rad/s]; without a measured attitude the tilt follows slower.
+# Height: gain [1/s] and greatest rate [m/s]. Tilt: gain [1/s], greatest rate [rad/s], gain without measured attitude.
 _HEIGHT_GAIN, _MOST_CLIMB = 2.5, 0.1
 _TILT_GAIN, _MOST_TURN, _UNMEASURED_GAIN = 6.0, 0.3, 0.5
-# Share of gain and greatest rate of tilt that is left where the walk waits, as the body would go after feet in holes,
-# and on slopes, where feet that are moved under their load slip; from which to which slope both become less.
+# Gain and greatest rate of the tilt fall to this share where the walk waits, as the body would follow feet into holes,
+# and on slopes, as feet that are moved under load slip; slopes between which they fall [m/m].
 _SLOW, _SLOPES = 1 / 3, (0.14, 0.24)
-# Speed with which a foot may approach the end of its reach, over the distance from there [1/s].
+# Greatest speed at which a foot may approach the end of its reach, over its distance from there [1/s].
 _BARRIER = 8.0
-# A standing body rests once climb [m/s] and turn [rad/s] are below the first, until they are above the second.
+# Climb [m/s] and turn [rad/s] below which a standing body comes to rest; those above which it moves again.
 _RESTS, _MOVES = (0.01, 0.06), (0.05, 0.18)
-# How fast the height to keep changes [m/s], and how much of the body height it may be lower.
+# How fast the height to keep rises and falls [m/s]; how far it may be below the commanded height, over that height.
 _RAISING, _LOWERING, _MOST_LOWER = 0.08, 0.2, 0.25
 
-# Least and greatest heights of all feet; those at footholds one after the other [m].
+# Least and greatest heights of all feet [m]; the same for one set of footholds after the other.
 _Ranges: TypeAlias = tuple[Sequence[float], Sequence[float]]
 _Rises: TypeAlias = Sequence[_Ranges]
 
@@ -43,11 +43,11 @@ class BodyMove(NamedTuple):
     velocity : complex
         Velocity of the body [m/s].
     feet : sequence of (complex, float)
-        The feet that stand, at least one: where, x + iy in the heading frame, and how much lower they could be [m].
+        The standing feet, at least one: place x + iy in the heading frame, and how much lower each could be [m].
     stands : bool
         Whether the body is to stand still: feet that are moved under their load slide down a slope.
     pace : float
-        Rate of the walk, 0 to 1: where it waits, feet look for the ground, and the body turns more slowly.
+        Rate of the walk, 0 to 1: where it waits for feet that look for the ground, the body turns more slowly.
     """
 
     velocity: complex
@@ -77,22 +77,22 @@ class PostureFeedback:
     Parameters
     ----------
     levelling, scale : "level", "between", "follow" or None, float
-        What to keep; None for no use of the measured attitude. By how much speeds are smaller than given, on short
-        legs, 0 to 1.
+        The attitude to keep, None to make no use of the measured one; factor on the speeds given here, 0 to 1, less
+        than 1 on short legs.
 
     Attributes
     ----------
     raised : float
         How much higher over the ground than commanded the body is to be [m].
     given_way : float
-        Share of the slope that the body follows as a level one has no room over it or its legs do not reach, 0 to 1.
+        Share of the slope that the body has to follow, as a level body lacks clearance or its legs reach, 0 to 1.
     kept : float
-        Share of a measured tilt that is turned back, 0 to 1.
+        Share of a measured tilt that is corrected, 0 to 1.
 
     Raises
     ------
     InputError
-        If `levelling` is another.
+        If `levelling` is anything else.
     """
 
     def __init__(self, levelling: Levelling | None, *, scale: float = 1.0) -> None:
@@ -115,11 +115,11 @@ class PostureFeedback:
             Least and greatest height of each foot over the plane's height at the origin [m]; those at the next
             footholds, where these are known, before those of now: no foot is taken off the ground for them.
         raises : tuple of float
-            How much higher than commanded the body is at least, and how much higher it should be [m].
+            Least and wanted rise of the body above its commanded height [m].
         dt, reach : float, tuple of sequence of float
             Length of the tick [s]; least and greatest height of each foot [m].
         height, share : float
-            Commanded height of the body [m]; share of the slope that legs and body have room for, 0 to 1.
+            Commanded height of the body [m]; share of the slope that a level body has reach and clearance for, 0 to 1.
         """
         wanted = raises[1]
         for least, most in (_heights(feet, reach, raises[0]) for feet in rises):
@@ -144,7 +144,7 @@ class PostureFeedback:
         (velocity, feet, stands, pace), fastest = move, self._scale * _MOST_CLIMB
         climb = min(max(_HEIGHT_GAIN * (plane.height + self.raised), -fastest), fastest)
         climb += plane.slope_x * velocity.real + plane.slope_y * velocity.imag
-        # A tilted body sees a slope where the ground is level.
+        # Level ground looks sloped from a tilted body: the lesser slope counts.
         slope = min(math.hypot(seen.slope_x, seen.slope_y) for seen in (plane, plane.levelled(tilt)))
         even = (_SLOPES[1] - slope) / (_SLOPES[1] - _SLOPES[0])
         quick = _SLOW + (1 - _SLOW) * min(pace, max(even, 0.0))
@@ -156,7 +156,7 @@ class PostureFeedback:
             turn = [quick * _TILT_GAIN * ((1 - share) * a + share * b) for a, b in zip(tilt, along, strict=True)]
         fastest_turn = quick * _MOST_TURN
         roll, pitch = (min(max(rate, -fastest_turn), fastest_turn) for rate in turn)
-        # The nearer a foot is to the end of its reach, the slower it goes there.
+        # The nearer a foot is to the end of its reach, the more slowly it may approach that.
         sinks = [(pitch * place.real - roll * place.imag, _BARRIER * margin) for place, margin in feet]
         share = 1.0
         for sink, fastest_sink in sinks:
@@ -170,6 +170,6 @@ class PostureFeedback:
 
 
 def _heights(rises: _Ranges, reach: _Ranges, least: float) -> tuple[float, float]:
-    """Return between which heights over the ground, the least one at least, feet are between theirs [m]."""
+    """Return the least and greatest rise of the body, not below `least`, that keeps all feet within reach [m]."""
     most = min(rise - low for low, rise in zip(reach[0], rises[0], strict=True))
     return max(least, *(rise - high for high, rise in zip(reach[1], rises[1], strict=True))), most

@@ -1,4 +1,4 @@
-"""Slope stance: legs turn across a slope along the body, and feet downhill are drawn in, to keep a level body."""
+"""Slope stance: to keep the body level, legs turn to point across the slope, and downhill feet are drawn in."""
 
 from __future__ import annotations
 
@@ -16,43 +16,43 @@ if TYPE_CHECKING:
 
 __all__ = ["SlopeStance"]
 
-# Slopes from which on, and up to which, the stance changes [rad].
+# Slopes between which the stance changes, in proportion [rad].
 _LEAST, _MOST = math.radians(6.0), math.radians(14.0)
-# How far legs turn about their coxa axes on a slope along the body [rad]: across it, feet would come too close
-# together; how far feet are drawn in, over the length of femur and tibia.
+# How far legs turn about their coxa axes on a slope along the body [rad]; on one across the body, feet would come too
+# close together. How far feet are drawn in, over the length of femur and tibia.
 _TURNED, _DRAWN_IN = math.radians(30.0), 0.13
-# Slopes from which on, and up to which, feet come down slowly [m/m], once they have lasted for so long [s]: feet push
-# on after contact, throw the body up, and slide as it comes down again. On rough ground, slopes do not last.
+# Slopes between which feet come down ever more slowly [m/m], and the time over which slopes are averaged for that [s]:
+# feet push on after contact, throw the body up, and slide as it comes down. On rough ground, slopes do not last.
 _SLOW_FROM, _SLOW, _LASTS = 0.18, 0.27, 1.0
-# Cycle time on a slope on which the stance changes, over that on level ground: feet slide down a slope with each step,
-# and longer ones are fewer.
+# Cycle time on a slope on which the stance changes, over that on level ground: feet slide downhill with each step, and
+# longer cycles mean fewer steps.
 _LONGER = 1.125
-# Part of its axis by which a leg points downhill whose foot is drawn in as far as any.
+# Downhill component of a leg's direction from which on its foot is drawn in fully; below, it is in proportion.
 _DOWNHILL = 2 / 3
-# Smaller changes wait: while the robot walks, and while it would step for them alone [m].
+# Changes of the stance below which none is made: while the robot walks, and while it would step for them alone [m].
 _SMALLEST, _STANDING = 0.005, 0.03
-# Room between body and slope that sagging legs leave [m].
+# Clearance between body and slope that is kept in reserve, as legs sag [m].
 _ROOM = 0.04
 
 
 class SlopeStance:
-    """Moves the rest footholds with the slope: feet far up and down it come closer to the height of the body's middle.
+    """Moves the rest footholds with the slope: feet far uphill and downhill come closer to the height below mid-body.
 
     Parameters
     ----------
     robot, scale : Robot, float
-        A single robot; by how much lengths are smaller than given, on short legs, 0 to 1.
+        A single robot; factor on the lengths given here, 0 to 1, less than 1 on short legs.
 
     Attributes
     ----------
     half : tuple of float
         Half the body's length, width and height [m].
     shift : complex array, shape (legs,)
-        By how much the rest footholds move, in the heading frame [m].
+        Displacement of each rest foothold, in the heading frame [m].
     uphill : complex
         The slope in the heading frame [m/m]; 0 where the stance is that of level ground.
     lasting : float
-        How far feet slow down before contact, as the slope lasts, 0 to 1.
+        How much feet slow down before contact on a slope that lasts, 0 to 1.
     """
 
     def __init__(self, robot: Robot, *, scale: float = 1.0) -> None:
@@ -82,7 +82,7 @@ class SlopeStance:
         drawn_in, dt : float
             How far all feet are drawn in for rough ground [m]; time since the last call [s].
         walks : bool
-            Whether the body is to move: feet that stand slide downhill as they step.
+            Whether the body is to move: a standing robot makes only greater changes, as its feet slide when they step.
         """
         uphill = complex(level.slope_x, level.slope_y)
         self._mean += min(dt / _LASTS, 1.0) * (uphill - self._mean)
@@ -101,12 +101,12 @@ class SlopeStance:
             self.shift = wanted
 
     def not_downhill(self, velocity: complex) -> complex:
-        """Return a correction of the velocity without what of it goes downhill: feet slip, unnoticed [m/s]."""
+        """Return a correction of the velocity without its downhill part, as feet slip downhill unnoticed [m/s]."""
         along = (velocity * self.uphill.conjugate()).real
         return velocity - along * self.uphill / abs(self.uphill) ** 2 if along < 0 else velocity
 
     def underside(self, plane: FootPlane, height: float) -> tuple[float, float]:
-        """Return how far a slope rises at most under the edges of the body, and how far it may rise there [m].
+        """Return the greatest rise of a slope under the edges of the body, and the greatest that it may have there [m].
 
         Parameters
         ----------
