@@ -41,12 +41,12 @@ class GuardBounds:
     margin : float
         Least stability margin [m]; minus infinity disables the check.
     foot_drag : float
-        Greatest change of the distance between two feet while both are in stance, besides what spherical feet roll
-        [m]; infinity disables the check.
+        Greatest change of the distance between two feet while both are in stance, beyond that by rolling of spherical
+        feet [m]; infinity disables the check.
     foot_height : float
         Greatest distance of a stance foot above or below the ground plane [m]; infinity disables the check.
     ground_slope : float
-        Steepest ground expected where the attitude of the body is given [rad].
+        Steepest ground that is expected where the attitude of the body is given [rad].
     min_time_step, max_time_step : float
         Shortest and longest valid time step [s].
     recovery_distance : float

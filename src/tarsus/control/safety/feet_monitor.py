@@ -13,8 +13,8 @@ from tarsus.robot.robot import Robot
 
 __all__ = ["FeetMonitor"]
 
-# Of each pair of feet in stance: its distance when both came into stance [m], and the angles of their tibiae relative
-# to B's plane at that time [rad].
+# For each pair of feet in stance: their distance when both had come into stance [m], and the angles of their tibiae to
+# B's xy plane at that time [rad].
 _References: TypeAlias = dict[tuple[int, int], Point]
 
 
@@ -84,7 +84,7 @@ class FeetMonitor:
     def _drag_violations(
         self, legs: list[int], feet: list[Point], angles: list[float]
     ) -> tuple[list[Intervention], _References]:
-        """Return the pairs of feet whose distance has changed too much since both came into stance; the references.
+        """Return violations for pairs of feet whose distance has changed too much in stance, and the references.
 
         A ball that rolls moves by at most its radius times the angle by which its tibia turns.
         """
@@ -101,7 +101,7 @@ class FeetMonitor:
         return found, references
 
     def _height_violations(self, legs: list[int], places: list[complex], heights: list[float]) -> list[Intervention]:
-        """Return the stance feet too far above or below the mean height of all stance feet."""
+        """Return violations for stance feet too far above or below the mean height of all stance feet."""
         middle, mean, found = sum(places) / len(places), sum(heights) / len(heights), []
         for leg, place, height in zip(legs, places, heights, strict=True):
             offset, bound = abs(height - mean), self._bounds.foot_height + self._slope * abs(place - middle)

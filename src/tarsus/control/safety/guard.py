@@ -63,11 +63,11 @@ class Guard:
     bounds : GuardBounds
         The bounds.
     state : GuardState
-        What it does with the commands.
+        What the guard does with the commands.
     counts : mapping of InterventionKind to int
         How many interventions of each kind began; one that lasts several ticks counts once.
     time : float
-        Sum of all valid time steps [s].
+        Sum of all time steps above 0 and up to an hour [s]; short ones count once they add up to a valid one.
 
     Raises
     ------

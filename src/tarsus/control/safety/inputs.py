@@ -26,13 +26,13 @@ def read_angles(angles: Any, names: list[tuple[str, str]], violations: list[Inte
     angles : any
         Joint angles as given; valid are real numbers of shape (legs, 3) [rad].
     names, violations : list of (str, str), list of Intervention
-        Names of leg and joint, for all joints; takes the violation.
+        Names of leg and joint, for all joints; the list that takes the violation.
     """
     listed = _listed(angles, "fiu", (len(names) // 3, 3), InterventionKind.SHAPE, violations)
     if listed is None:
         return None
     values = list(map(float, listed))
-    # Only the sum of values that are not finite, or of very great ones, is not finite.
+    # A finite sum means that all values are finite; one that is not may also come from very great values.
     if math.isfinite(sum(values)):
         return values
     for name, value in zip(names, values, strict=True):
@@ -50,7 +50,7 @@ def read_contacts(contacts: Any, legs: int, violations: list[Intervention]) -> l
     contacts : any
         Contacts as given; valid is an array of bool, shape (legs,).
     legs, violations : int, list of Intervention
-        Number of legs; takes the violation.
+        Number of legs; the list that takes the violation.
     """
     return _listed(contacts, "b", (legs,), InterventionKind.CONTACTS, violations)
 
@@ -63,7 +63,7 @@ def read_up(body: Any, violations: list[Intervention]) -> Point | None:
     body : any
         Pose of B in G as given; valid is a single `Pose`.
     violations : list of Intervention
-        Takes the violation.
+        The list that takes the violation.
     """
     if isinstance(body, Pose) and body.rotation.shape == (3, 3):
         x, y, z = body.rotation[2].tolist()
@@ -74,14 +74,14 @@ def read_up(body: Any, violations: list[Intervention]) -> Point | None:
 
 
 def read_time_step(dt: Any, bounds: GuardBounds, violations: list[Intervention]) -> float:
-    """Return the time that has passed, 0 for an invalid time step.
+    """Return the time that has passed: the time step, or 0 if it is not a number above 0 and up to an hour [s].
 
     Parameters
     ----------
     dt : any
         Time step as given [s].
     bounds, violations : GuardBounds, list of Intervention
-        Bounds of the time step; takes the violation.
+        Bounds of the time step; the list that takes the violation.
     """
     try:
         step = math.nan if isinstance(dt, str | bytes | bytearray) else float(dt)
@@ -97,7 +97,7 @@ def read_time_step(dt: Any, bounds: GuardBounds, violations: list[Intervention])
 def _listed(
     given: Any, kinds: str, shape: tuple[int, ...], wrong: InterventionKind, violations: list[Intervention]
 ) -> list[Any] | None:
-    """Return the numbers of an array of a shape and a kind of data type in one flat list."""
+    """Return the values of an array of the given shape and kinds of data type in one flat list."""
     # The conversion of an arbitrary object can raise anything, and the guard must still return angles.
     try:
         array = np.asarray(given)

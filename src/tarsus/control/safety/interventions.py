@@ -31,7 +31,7 @@ class InterventionKind(StrEnum):
     quantity, unit : str
         The quantity that is bounded, and the unit in which it is shown.
     scale : float
-        How many of these units are in one SI unit.
+        How many of these units make one SI unit.
     """
 
     quantity: str
@@ -39,7 +39,7 @@ class InterventionKind(StrEnum):
     scale: float
 
     def __new__(cls, name: str, quantity: str, unit: str, scale: float) -> Self:
-        """Return the member of a row of the table."""
+        """Return the member for a row of the table below."""
         kind = str.__new__(cls, name)
         kind._value_, kind.quantity, kind.unit, kind.scale = name, quantity, unit, scale
         return kind
@@ -123,7 +123,7 @@ class GuardOutput(NamedTuple):
     state : GuardState
         What the guard does.
     time : float
-        Time of the guard, to which the angles belong: the sum of all valid time steps [s].
+        Time of the guard, to which the angles belong: the sum of all time steps above 0 and up to an hour [s].
     interventions : tuple of Intervention
         Violations of the command: the worst one of each kind.
     """

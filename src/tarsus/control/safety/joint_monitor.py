@@ -6,8 +6,8 @@ the acceleration A, a joint with speed v over its last step h comes to rest with
 
     max(0, |v| - A h / 2)^2 / (2 A)
 
-whatever the following steps are: the angles sent while braking are midpoint sums of a linearly decreasing speed, which
-are at most its integral. A joint that keeps this distance from its limit can always be stopped before the limit.
+however long the following steps are: the angles sent while braking are midpoint sums of a linearly decreasing speed,
+which are at most its integral. A joint that keeps this distance from its limit can always be stopped before the limit.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ from tarsus.robot.robot import JOINTS, Robot
 
 __all__ = ["JointMonitor"]
 
-# Tolerance of a sent angle for the bounds on speed and acceleration [rad].
+# Rounding of a sent angle that is tolerated by the bounds on speed, acceleration and braking distance [rad].
 _ROUNDING = 1e-12
 
 
@@ -33,7 +33,7 @@ class JointMonitor:
     Attributes
     ----------
     names : list of (str, str)
-        Of each joint: short name of its leg, and its own name.
+        For each joint: short name of its leg, and its own name.
     angles : list of float
         Last sent joint angles of all legs in one flat list [rad].
     speeds : list of float
@@ -75,7 +75,7 @@ class JointMonitor:
         Parameters
         ----------
         angles : list of float
-            Joint angles in one flat list [rad]. Excess within the tolerance of inverse kinematics is clamped only.
+            Joint angles in one flat list [rad]. Excess within the tolerance of inverse kinematics is only clamped.
         """
         violations = []
         for i, (angle, (low, high, _, _)) in enumerate(zip(angles, self._bounds, strict=True)):
@@ -132,7 +132,7 @@ class JointMonitor:
         Parameters
         ----------
         step, gap : float, bool
-            Time step [s]; whether it is a gap, whose length must not allow joints at rest a sudden start.
+            Time step [s]; whether it is a gap, whose length must not let joints at rest start suddenly.
         """
         self._send_velocities([0.0] * len(self.speeds), step)
         if gap and self.at_rest:

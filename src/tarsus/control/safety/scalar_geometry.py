@@ -73,8 +73,8 @@ def _constants(robot: Robot, masses: Float[np.ndarray, "legs 3"]) -> list[tuple[
 
     With the femur angle q1 and the tibia angle q2, the foot is ``coxa + femur cos(q1) + tibia cos(q1 + q2)`` outward
     of the coxa axis, and its height is that of the femur axis plus the same sum of sines. The first moment of the leg's
-    masses, divided by the mass of the robot, is ``out + femur cos(q1) + tibia cos(q1 + q2)`` outward with its own
-    constants, the last five, and `up` plus the same sum of sines upward.
+    masses, divided by the mass of the robot, has the same form with constants of its own, the last five:
+    ``m_out + m_femur cos(q1) + m_tibia cos(q1 + q2)`` outward, and `m_up` plus the same sum of sines upward.
     """
     coxa, femur, tibia, (side, up) = robot.coxa, robot.femur, robot.tibia, robot.femur_axis_offset.T
     (x, y, z), (coxa_mass, femur_mass, tibia_mass) = robot.mount_position.T, masses.T
@@ -90,7 +90,7 @@ def _constants(robot: Robot, masses: Float[np.ndarray, "legs 3"]) -> list[tuple[
 
 
 def project(points: list[Point], origin: Point, up: Point) -> tuple[list[complex], list[float]]:
-    """Return where points are horizontally, as complex numbers, and their heights, both relative to an origin [m].
+    """Return the horizontal places of points, as complex numbers, and their heights, both from an origin [m].
 
     Parameters
     ----------

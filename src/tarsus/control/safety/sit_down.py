@@ -30,17 +30,17 @@ _SPEED_FRACTIONS = (1.0, 0.5, 0.25)
 class SitDown:
     """Lowers the body step by step.
 
-    The joint angles follow the feet by the inverse Jacobian of each leg. So the current solution of inverse kinematics
-    is kept, and the motion ends where a leg cannot follow.
+    The joint angles follow the feet by the inverse Jacobian of each leg. This keeps to the current one of the solutions
+    of inverse kinematics, and the motion ends where a leg cannot follow.
 
     Parameters
     ----------
     robot : Robot
         A single robot.
     bounds, joints : GuardBounds, JointMonitor
-        Bounds on speeds and heights; the joints, at rest.
+        The guard's bounds; the joints, at rest.
     stance : list of bool or None
-        Feet in stance; None for all.
+        Feet in stance; None if all are.
     up : Point
         Upward direction in B.
     """
