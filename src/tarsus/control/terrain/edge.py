@@ -1,4 +1,4 @@
-"""Edge: the direction in which the ground ends, as the feet that find none tell it."""
+"""Edge: the direction in which the ground ends, inferred from feet that find none."""
 
 from __future__ import annotations
 
@@ -11,32 +11,32 @@ from tarsus.control.limiter.protocol import leads_towards
 __all__ = ["FORGETS", "Edge", "direction"]
 
 FORGETS = 6.0
-"""Time without holes after which it is forgotten which edge the robot has left [s]."""
+"""Time without a foot over a hole after which the edge that the robot has left is forgotten [s]."""
 
-# A robot that walks faster has met the edge on the way of its foot [m/s].
+# Speed above which the robot has met the edge in the direction in which the foot moved [m/s].
 _MOVES = 0.005
-# A foot this far from its rest foothold is on that side of it [m].
+# Offset of a foot from its rest foothold above which it tells the direction of the edge [m].
 _OFF = 0.01
 
 
 class Edge:
-    """Keeps the directions of the edge that the robot has met, and of the one that it has left.
+    """Keeps the direction of the edge that the robot has met, and that of the edge that it has left.
 
-    All are in the heading frame, and turn back as that turns.
+    All directions are in the heading frame, and are turned as that turns, so that they stay fixed to the ground.
 
     Parameters
     ----------
     scale : float
-        By how much speeds are smaller than given, on short legs, 0 to 1.
+        Factor by which speeds are reduced on short legs, 0 to 1.
 
     Attributes
     ----------
     way, left : complex
-        Directions of the edge that feet have met, and of the one that the robot leaves; 0 without one.
+        Direction of the edge that feet have met, and of the edge that the robot leaves; 0 without one.
     since : float
-        Time without feet over holes [s].
+        Time without a foot over a hole [s]; starts again when the robot leaves an edge.
     twist : sequence of float
-        The twist before any foot searched, by which it has met the edge [m/s, m/s, rad/s].
+        The last twist before a foot searched for the ground, with which the robot met the edge [m/s, m/s, rad/s].
     """
 
     def __init__(self, scale: float) -> None:
@@ -50,28 +50,30 @@ class Edge:
 
     @property
     def turns(self) -> bool:
-        """Whether the robot has turned on the spot as it met the edge."""
+        """Whether the robot was turning on the spot when it met the edge."""
         return bool(self.twist[2]) and not self._moves
 
     def along(self, place: complex) -> float:
-        """Return how far a place in the heading frame is towards the edge that feet have met [m]."""
+        """Return how far a place in the heading frame is along the direction of the edge that feet have met [m]."""
         return (place * self.way.conjugate()).real
 
     def turn_to(self, yaw: float) -> complex:
-        """Take the direction of the heading frame [rad]; return what directions in it are to be multiplied by."""
+        """Take the yaw of the heading frame [rad]; return the factor that keeps directions fixed to the ground."""
         turn, self._yaw = cmath.exp(1j * (self._yaw - yaw)), yaw
         self.way, self.left = self.way * turn, self.left * turn
         return turn
 
     def leave(self, obstacle: complex) -> None:
-        """Remember the edge as the one that the robot leaves, unless it is the direction of an obstacle."""
+        """Remember the edge as the one that the robot leaves, unless its direction is that of an obstacle."""
         self.left = 0j if self.way == obstacle else self.way
         self.way, self.since = 0j, 0.0
 
     def seen_from(self, foot: complex, rest: complex) -> complex:
         """Return the direction of the edge at a foot.
 
-        It is that of the foot's way over the ground, or that from its rest foothold if it stood.
+        For a robot that walked, it is the direction in which the foot moved over the ground; for one that stood, that
+        of the known edge on the foot's side, or else that of the foot from its rest foothold. An edge that the robot
+        has just left comes first, unless it walks in another direction than away from that.
 
         Parameters
         ----------
@@ -83,21 +85,21 @@ class Edge:
             return self.left
         if moves:
             way = velocity / abs(velocity)
-            # The edge at a foot behind the body on its way is one that the robot leaves.
+            # A foot behind the body, as seen along the way, is at an edge that the robot leaves.
             return -way if leads_towards(rest, -way) else way
-        # A foot that has stepped back from an edge is on the other side of its rest foothold.
+        # A foot that has stepped back is off its rest foothold to the side away from the edge.
         if leads_towards(rest, self.way):
             return self.way
-        # The feet of a robot that turns move along the edge as well as over it.
+        # Feet of a robot that turns move along the edge as well as over it, so only their place tells its direction.
         return rest / abs(rest) if self.turns else direction(foot - rest, rest)
 
 
 def direction(off: complex, rest: complex) -> complex:
-    """Return the direction of a foot from its rest foothold, or of that from the body where it is there.
+    """Return the direction of a foot from its rest foothold; where it is at that, of the rest foothold from the body.
 
     Parameters
     ----------
     off, rest : complex
-        The foot from its rest foothold; the rest foothold, in the heading frame [m].
+        Offset of the foot from its rest foothold; the rest foothold; both in the heading frame [m].
     """
     return off / abs(off) if abs(off) > _OFF else rest / abs(rest)

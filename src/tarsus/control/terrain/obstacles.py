@@ -1,4 +1,4 @@
-"""Obstacles: feet that are stopped on their way try again, swung out, then beside it, and are put down before it."""
+"""Obstacles: a foot that is stopped tries again, swung out, then beside its way, and is at last put down before it."""
 
 from __future__ import annotations
 
@@ -8,28 +8,30 @@ from tarsus.control.limiter.protocol import leads_towards
 
 __all__ = ["Obstacles"]
 
-# How often a foot is stopped until it goes beside its way, on how many sides, how far, and how far back before [m].
+# From which stop on, after the first collision, a foot tries beside its way; on how many sides, and how far beside [m];
+# how far behind the place of its first stop it starts again [m].
 _STOPS, _SIDES, _BESIDE, _BEFORE = 3, 2, 0.06, 0.04
-# A way below which it has no direction [m].
+# Length below which a way has no direction [m].
 _NO_WAY = 1e-9
 
 
 class Obstacles:
-    """Decides where feet try next that are stopped on their way.
+    """Decides where a foot that is stopped on its way tries next.
 
     Parameters
     ----------
     scale : float
-        By how much lengths are smaller than given, on short legs, 0 to 1.
+        Factor by which lengths are reduced on short legs, 0 to 1.
 
     Attributes
     ----------
     found : complex
-        The direction of the obstacle that no foot got past; 0 without one.
+        Direction of the obstacle that a foot has failed to get past; 0 without one.
     stops : dict of int to (int, complex, complex)
-        By leg, how often its foot was stopped, where first, and where it was to go, in the heading frame [m].
+        By leg, the number of its stops, the first collision included; where the foot was at the first stop after that;
+        its goal; places in the heading frame [m].
     goals : dict of int to complex
-        By leg, where its foot goes on to from beside its way, in the heading frame [m].
+        By leg, where its foot goes once it is beside its way, in the heading frame [m].
     """
 
     def __init__(self, scale: float) -> None:
@@ -38,15 +40,15 @@ class Obstacles:
         self.goals = dict[int, complex]()
 
     def tries(self, leg: int) -> bool:
-        """Return whether a foot is to get past an obstacle, and is not put down before it."""
+        """Return whether a foot still tries to get past an obstacle, rather than being put down before it."""
         return leg in self.stops and self.stops[leg][0] <= _STOPS + _SIDES
 
     def leaves(self, way: complex) -> bool:
-        """Return whether a way of a foot, in the heading frame, leads away from the obstacle that was found."""
+        """Return whether a foot's way, in the heading frame, leads away from the obstacle that was found."""
         return (way * self.found.conjugate()).real < 0.0
 
     def stopped(self, leg: int, foot: complex, goal: complex, bow: complex) -> tuple[complex, complex]:
-        """Decide where a foot tries next that is stopped here on its way to a goal.
+        """Decide where a foot that is stopped on its way to a goal tries next.
 
         Parameters
         ----------
@@ -55,12 +57,12 @@ class Obstacles:
         foot, goal : complex
             Where the foot is, and where it was to go, in the heading frame [m].
         bow : complex
-            How far the foot may swing out: there the leg reaches higher [m].
+            How far the foot may swing out, to where the leg reaches higher, in the heading frame [m].
 
         Returns
         -------
         start, place : complex
-            Where it is drawn back to; where it goes from there, the same place if it was stopped too often [m].
+            Where the foot is drawn back to; where it goes from there: the same place after too many stops [m].
         """
         stops, start, goal = self.stops.get(leg, (1, foot, goal))
         self.stops[leg], way = (stops + 1, start, goal), goal - start
@@ -81,7 +83,7 @@ class Obstacles:
         return start, start + side
 
     def led_away(self, velocity: complex) -> list[int]:
-        """Return the legs with feet that try to get past an obstacle, where a twist leads back on their way."""
+        """Return the legs whose feet try to get past an obstacle while the velocity leads back along their way."""
         back = {leg: start - goal for leg, (_, start, goal) in self.stops.items() if self.tries(leg)}
         return [leg for leg, way in back.items() if leads_towards(velocity, way)]
 

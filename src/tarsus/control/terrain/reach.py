@@ -17,22 +17,22 @@ if TYPE_CHECKING:
 
 __all__ = ["Reach"]
 
-# Change of a stroke that changes the heights that a leg reaches [m]; turning counts at this distance [m].
+# Step in which strokes change before heights are computed again [m]; lever arm that turns a rotation into a stroke [m].
 _STROKE_STEP, _TURNING_ARM = 0.01, 0.2
-# A foot this close to its least height hangs [m], and how much lower the ground under it is then expected [m].
+# Distance from its least height within which a foot hangs [m]; how far below that its ground is then expected [m].
 _HANGING, _LOWER = 0.002, 0.03
-# Room over the ground that a leg's greatest height leaves for its swing, over the swing height; while a foot hangs.
+# Room for the swing between the ground and a leg's greatest height, over the swing height; the same while a foot hangs.
 _CLEARANCE, _HANGING_CLEARANCE = 1.5, 0.75
-# How far a foot swings out across its stroke at most, so that it reaches higher [m].
+# How far at most a foot swings out across its stroke, where its leg reaches higher [m].
 _BOW = 0.03
-# Length of femur and tibia from which on lengths and speeds of walks that feel the ground are as given [m].
+# Length of femur and tibia together from which on the lengths and speeds of felt walks apply without reduction [m].
 _USUAL_LEG = 0.19
-# Stroke below which it has no direction [m], and decimals of a distance from a line that is 0 [m].
+# Length below which a stroke has no direction [m]; decimals of the distance of a coxa from the line of a stroke [m].
 _NO_STROKE, _DECIMALS = 1e-9, 6
 
 
 class Reach:
-    """The heights at which each leg reaches its stroke, computed anew where stroke or posture have changed.
+    """The heights at which each leg reaches its stroke, computed again when stroke, posture or rest footholds change.
 
     Parameters
     ----------
@@ -42,20 +42,20 @@ class Reach:
     Attributes
     ----------
     lowest, highest : list of float
-        Least and greatest height of each foot in the heading frame [m].
+        Least and greatest height at which each foot reaches its whole stroke, in the heading frame [m].
     bows : complex array, shape (legs,)
         How far each foot may swing out across its stroke, in the heading frame [m].
     rest, strokes : complex array, shape (legs,)
         Rest foothold and stroke of each foot, in the heading frame [m].
     stroke, scale : float
-        Half the longest stroke [m]; by how much lengths and speeds are smaller than given, on short legs, 0 to 1.
+        Half the longest stroke [m]; factor by which lengths and speeds are reduced on short legs, 0 to 1.
     """
 
     def __init__(self, robot: Robot) -> None:
         self.lowest, self.highest = [0.0] * robot.legs, [0.0] * robot.legs
         self.stroke, self.strokes = 0.0, np.zeros(robot.legs, dtype=complex)
         self.rest: Complex[np.ndarray, "legs"] = self.strokes
-        # Greatest height of each foot at the places of its stroke, and beside them, swung out [m].
+        # Greatest height of each foot at the places of its stroke, straight on and swung out [m].
         self._tops = self._bowed = [(0.0,) * len(STROKE_PLACES)] * robot.legs
         self.bows = self.strokes
         self.scale = min(float((robot.femur + robot.tibia).mean()) / _USUAL_LEG, 1.0)
@@ -80,14 +80,14 @@ class Reach:
         if key != self._key or rest is not self.rest:
             self._key, self.rest, strokes = key, rest, complex(x, y) + 1j * arc / _TURNING_ARM * rest
             self.stroke, self.strokes = float(np.abs(strokes).max()) / 2, strokes
-            # Away from the leg's coxa, across the stroke; nowhere where the coxa is in line with that.
+            # Feet swing out across the stroke, away from the coxa; not at all where that is in line with the stroke.
             along = strokes / np.maximum(np.abs(strokes), _NO_STROKE)
             aside = np.sign(((rest - self._mounts) * along.conj()).imag.round(_DECIMALS))
-            # Of a robot that stops, the body keeps its height.
+            # A robot that stops keeps its bows, and so the height of its body.
             self.bows = np.where(strokes == 0, self.bows, self.scale * _BOW * 1j * along * aside)
             heights = reachable_heights(self._robot, posture, np.array([rest, rest + self.bows]), strokes)
             (lowest, lowest_beside), (highest, highest_beside) = heights
-            # Ends of strokes beyond the limits of the coxa are not walked; a leg that reaches nowhere keeps its reach.
+            # Ends of strokes beyond the limits of the coxa are not walked; a leg that reaches none keeps its heights.
             walked = lowest < highest
             kept = ~walked.any(axis=0)
             least = lowest.max(axis=0, where=walked, initial=-np.inf)
@@ -114,7 +114,7 @@ class Reach:
         return min(straight, straight_end), min(bowed, bowed_end)
 
     def _highest_at(self, leg: int, place: complex) -> tuple[float, float]:
-        """Return the same at a place, by how far along and beside its stroke that is [m]."""
+        """Return the same at one place, from its distances along and beside the stroke [m]."""
         stroke, bow = complex(self.strokes[leg]), complex(self.bows[leg])
         off = place - complex(self.rest[leg])
         ahead = (off * stroke.conjugate()).real / abs(stroke) ** 2 if stroke else 0.0
@@ -135,11 +135,11 @@ class Reach:
         return [min(min(out) - room, highest) for out, highest in zip(self._bowed, self.highest, strict=True)]
 
     def hangs(self, leg: int, height: float) -> bool:
-        """Return whether a leg with its foot at a height in the heading frame [m] is at the end of its reach."""
+        """Return whether a leg is at the end of its reach with its foot at this height in the heading frame [m]."""
         return height < self.lowest[leg] + self.scale * _HANGING
 
     def rises(self, plane: FootPlane, over: list[float], *, bears: list[int], hanging: list[int]) -> list[float]:
-        """Return the height of the ground under each leg, as far as it is known, over the plane's at the origin [m].
+        """Return the height of the ground under each leg, as far as known, over that of the plane at the origin [m].
 
         Parameters
         ----------
@@ -158,6 +158,6 @@ class Reach:
 
 
 def _along(tops: tuple[float, ...], ahead: float) -> float:
-    """Return the greatest height at a place so far ahead of the middle of a stroke, over its length [m]."""
+    """Return the greatest height [m] at a place of a stroke, `ahead` of its middle as a fraction of its length."""
     rear, middle, front = tops
     return middle + min(2 * abs(ahead), 1.0) * ((front if ahead > 0 else rear) - middle)
