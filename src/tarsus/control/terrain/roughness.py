@@ -1,4 +1,4 @@
-"""Roughness: how uneven the ground is that the feet have met, and what follows for heights, stance and cycle."""
+"""Roughness: how uneven the ground is that feet have met, and how heights, stance and cycle adapt to it."""
 
 from __future__ import annotations
 
@@ -11,20 +11,20 @@ from tarsus.representation import represented
 
 __all__ = ["GroundAdaptation", "Roughness"]
 
-# Roughness that a collision stands for [m].
+# Roughness that a collision counts as [m].
 _COLLISION = 0.04
-# Footholds this close to the expected ground are even [m].
+# Deviation from the expected ground up to which a foothold counts as even [m].
 _EVEN = 0.008
 # Cycles after which the roughness has fallen to 1/e.
 _MEMORY = 4.0
-# Roughness up to which feet are drawn in, and from which on until which cycle and speed change [m].
+# Roughness up to which feet are drawn in ever farther; from there to the second, cycle time and speed change [m].
 _ROUGH, _ROUGHEST = 0.02, 0.04
-# Roughness at which cycles are as on even ground again: legs reach less high and low in long strokes [m].
+# Roughness at which the cycle time is that on even ground again: legs reach less high and low in long strokes [m].
 _HIGH = 0.05
-# How much deeper ground may be where it is rough: over the roughness, and at most [m]; over how many cycles that grows,
-# and to which depth [m]. At a single edge on even ground the roughness has not lasted.
+# How much deeper than expected rough ground may be, over the roughness, and at most [m]; time constant of lasting
+# roughness [cycles], and the greatest depth for it [m]: at a single edge on even ground, roughness has not lasted.
 _DEEPER, _DEEPEST, _LASTS, _LASTING_DEEPEST = 2.5, 0.03, 3.0, 0.05
-# Stance, cycle and speed change in steps of this share: each has limits computed anew.
+# Number of steps in which stance, cycle time and speed change: for each step, limits are computed again.
 _STEPS = 4
 
 
@@ -33,7 +33,7 @@ _STEPS = 4
 class GroundAdaptation:
     """How far a walk may adapt to rough ground, and how slippery the ground may be.
 
-    Lengths are those of legs of 190 mm or more from femur to foot; shorter ones adapt less, in proportion.
+    Lengths are for legs whose femur and tibia measure 190 mm or more together; shorter legs adapt less, in proportion.
 
     Attributes
     ----------
@@ -47,15 +47,14 @@ class GroundAdaptation:
     speed : float
         Greatest speed on rough ground, over the top speed on even ground.
     catch_up : float
-        Greatest speed that makes up for time that the ground has cost, over the commanded one; 1 for none.
+        Greatest speed, over the commanded one, at which the walk makes up for time lost on the ground; 1 for none.
     friction : float
-        Coefficient of friction that feet are sure of: slopes on which they would slip with it are refused.
+        Coefficient of friction to rely on: slopes on which feet would slip with it are refused.
 
     Raises
     ------
     InputError
-        If one is negative or not finite, cycles would be shorter, catching up slower than commanded, or the speed is 0
-        or higher than on even ground.
+        If a value is negative or not finite, `cycle_time` or `catch_up` is below 1, or `speed` is 0 or above 1.
     """
 
     swing_height: float = 0.05
@@ -82,14 +81,14 @@ class Roughness:
     Parameters
     ----------
     adaptation, scale : GroundAdaptation, float
-        How far the walk may adapt; by how much lengths are smaller than given, on short legs, 0 to 1.
+        How far the walk may adapt; factor by which lengths are reduced on short legs, 0 to 1.
 
     Attributes
     ----------
     adaptation : GroundAdaptation
         How far the walk may adapt.
     value : float
-        Distance of footholds from the expected ground, less that of footholds on even ground [m].
+        Deviation of footholds from the expected ground, beyond that on even ground; it decays with the cycles [m].
     """
 
     def __init__(self, adaptation: GroundAdaptation, *, scale: float = 1.0) -> None:
@@ -97,14 +96,14 @@ class Roughness:
         self.adaptation, self._scale = adaptation, scale
 
     def landed(self, off: float) -> None:
-        """Take note of a foothold that is so far above the expected ground [m]."""
+        """Take note of a foothold at this height over the expected ground, negative below it [m]."""
         self.value = max(self.value, abs(off) - self._scale * _EVEN)
 
     def at_edge(self, depth: float) -> None:
-        """Take note of a foot so deep below the expected ground that its leg may rest on the edge of a step [m].
+        """Take note of a foot this far below the expected ground whose leg may rest on the edge of a step [m].
 
-        Beside it, legs are steeper with the body higher and the feet drawn in. The ground there is not rough: feet that
-        went down faster and pressed on it would tip the robot over the edge.
+        With the body higher and the feet drawn in, legs are steeper beside the edge. The ground does not count as
+        rough: feet that went down faster and pressed on it would tip the robot over the edge.
         """
         self._edge = max(self._edge, depth - self._scale * _EVEN)
 
@@ -113,7 +112,7 @@ class Roughness:
         self.value = max(self.value, self._scale * _COLLISION)
 
     def decay(self, cycles: float) -> None:
-        """Forget, as so many cycles have passed."""
+        """Let the roughness decay over this many cycles."""
         kept = math.exp(-cycles / _MEMORY)
         self.value, self._edge = self.value * kept, self._edge * kept
         rising = self._lasting + (self.value - self._lasting) * -math.expm1(-cycles / _LASTS)
@@ -121,7 +120,7 @@ class Roughness:
 
     @property
     def _or_edge(self) -> float:
-        """The roughness, or what stands for it beside an edge, where only heights and footholds adapt [m]."""
+        """The roughness, or what replaces it beside an edge: heights and stance alone adapt to that [m]."""
         return max(self.value, self._edge)
 
     @property
@@ -157,6 +156,6 @@ class Roughness:
         return 1 - self._share(self.value, _ROUGH, _ROUGHEST) * (1 - self.adaptation.speed)
 
     def _share(self, value: float, least: float, most: float) -> float:
-        """Return where a roughness is between two values, 0 to 1."""
+        """Return where a roughness is between two values, 0 to 1, rounded to steps."""
         share = (value / self._scale - least) / (most - least)
         return min(max(round(_STEPS * share) / _STEPS, 0.0), 1.0)

@@ -1,4 +1,4 @@
-"""Slope limit: no further up or down slopes that are too slippery, or on which legs do not keep the body level."""
+"""Slope limit: refuses to go further up or down slopes that are too slippery or on which the body is not kept level."""
 
 from __future__ import annotations
 
@@ -10,22 +10,22 @@ from tarsus.gait.foot_plane import FootPlane
 
 __all__ = ["SlopeLimit"]
 
-# Friction that legs use up which press against each other, over their load: they give way outwards under it.
+# Friction used up by legs that press against each other, over their load, under which they give way outwards.
 _PRELOAD = 0.32
-# How much less steep a slope is that is walked again [rad].
+# How far a slope must be below the steepest one to be walked again [rad].
 _HYSTERESIS = math.radians(2.0)
-# Slope from which on a body stops that is so far off its attitude, until it is less so [rad].
+# On slopes above the first angle, a body this far off its attitude stops, until it is off by less than the third [rad].
 _SLOPES, _OFF, _LEVELLED = math.radians(8.0), math.radians(12.0), math.radians(8.0)
-# How much farther off than its mean over so long [s] a body is that tips: no foot lifts off then [rad].
+# A body tips while it is farther off its attitude than in the mean by the first [rad], the mean over the second [s].
 _TIPS, _MEAN = math.radians(0.5), 0.6
 
 
 class SlopeLimit:
     """Refuses motion further up or down a slope on which feet would slip, or the robot would tip over.
 
-    Feet slip where the slope's tangent and the friction that legs use up against each other exceed the coefficient of
-    friction. A body that legs at the end of their reach no longer keep level shifts its weight downhill, which tilts it
-    further: it stops, and its feet step to where legs reach until it is level again.
+    Feet slip where the tangent of the slope plus the friction used up by legs that press against each other exceeds the
+    coefficient of friction. Where legs at the end of their reach no longer keep the body level, its weight shifts
+    downhill, which tilts it further: it stops, and the feet step to where legs reach, until it is level again.
 
     Parameters
     ----------
@@ -37,16 +37,16 @@ class SlopeLimit:
     steepest : float
         Steepest slope that is walked [rad].
     slope : float
-        The slope under the feet; where motion is refused, the steepest one since then [rad].
+        The slope under the feet; while motion is refused, the steepest one since that began [rad].
     refused, refuses : float, bool
-        Which motion is refused, positive for one further up and negative for one further down, 0 for none; whether the
-        one that is followed is, as feet slip or the body tips.
+        Which motion is refused: positive for uphill, negative for downhill, 0 for none; whether the motion that is
+        followed is refused, as feet would slip or the body tips.
     """
 
     def __init__(self, friction: float) -> None:
         self.steepest = math.atan(max(friction - _PRELOAD, 0.0))
         self.slope, self.refuses = 0.0, False
-        # Whether the body is too far off its attitude, how far it is, and in the mean [rad].
+        # Whether the body is too far off its attitude; how far off it is now, and in the mean [rad].
         self._tilts, self._off, self._mean, self.refused = False, 0.0, 0.0, 0.0
         self._uphill, self._stops, self._tips = 0j, False, False
 
@@ -56,7 +56,7 @@ class SlopeLimit:
         Parameters
         ----------
         level, velocity : FootPlane, complex
-            The plane of the feet as a level body sees it; the velocity that is followed [m/s].
+            The plane of the feet as a level body sees it; the velocity that is followed, in the heading frame [m/s].
         dt, off : float
             Time since the last call [s]; by how much the body is off the attitude to keep [rad].
         """
@@ -74,9 +74,9 @@ class SlopeLimit:
         self.refuses = self.refused * rises > 0 and not self._stops
 
     def limit(self, request: TwistRequest, grant: TwistGrant) -> TwistGrant:
-        """Return the grant, without a twist further up or down while the body is off level: feet step on the spot."""
+        """Return the grant, with no twist further up or down while the body is off level: feet step on the spot."""
         leads = self._tilts and self.refused * self._rises(complex(*request.twist[:2])) > 0
-        # While it tips, the walk waits.
+        # While the body tips, the walk waits: stepping on the spot begins once it no longer does.
         self._stops = leads and (self._stops or not self._tips)
         if self._stops:
             return grant.at_most(0.0, Limitation(kind=LimitationKind.GROUND, cause=self.reason))
@@ -94,7 +94,7 @@ class SlopeLimit:
     def reason(self) -> str:
         """Why motion is refused."""
         if self._tilts:
-            # One that has stopped goes on once it is less.
+            # Once stopped, the robot goes on below the lower bound.
             off, most = math.degrees(self._off), math.degrees(_OFF if self._off > _OFF else _LEVELLED)
             return f"a slope on which legs do not keep the body level: off by {off:.0f} deg, at most {most:.0f} deg"
         steepest = f"the steepest one for their friction is {math.degrees(self.steepest):.0f} deg"

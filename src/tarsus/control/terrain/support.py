@@ -14,21 +14,22 @@ __all__ = ["HALTING", "Footing", "Search", "Support", "Tipping", "along_gravity"
 
 # Rates at which the pace falls and rises [1/s].
 _FALL, _RISE = 10.0, 6.0
-# Part of a swing for which feet may wait before the steps slow down.
+# Fraction of a swing time over which the pace falls to 0 while feet that are due have to wait.
 _PATIENCE = 0.3
-# How long the robot may be without support between two footholds [s].
+# Time without support after which the pace falls, and over which it falls to 0; a third of it before feet that wait
+# slow the walk [s].
 _GRACE = 0.15
-# Least angle by which the centre of mass is inside the support polygon, as seen from it [rad].
+# Margin of a centre of mass inside the support polygon: it sees neighbouring feet less than pi apart, by this [rad].
 _LEAST_ANGLE = 0.02
-# How far a body sinks at a foot that gives way, at least [m], within which time [s]; how far below the expected ground
-# such a foot is [m]; for how long a robot has tipped that is at the edge of a hole, at least [s]; how soon a body that
-# stays tilted has settled [s].
+# Where contacts are estimated: least sinking of the body at a foot at which it tips [m], from the mean tilt over a time
+# [s]; least depth of that foot below the expected ground [m]; time of tipping after which there is an edge [s]; time of
+# the mean tilt while the robot tips: a body that stays tilted settles in it [s].
 _SINKS, _FOLLOWED, _LOW, _LASTS, _SETTLES = 0.015, 0.6, 0.008, 0.2, 2.0
-# How far a foot that bears load sinks against the others that slides over an edge, at least [m], besides so many times
-# the usual change between two looks, that at first [m], and so much of how much deeper ground may be; how fast feet
-# sink that roll or slip on slopes [m/s]; how fast the usual change is learnt [1/s].
+# A loaded foot slides over an edge once it has sunk against the others by more than the sum of a length [m], so many
+# times the usual change between two looks, initially the third value [m], and a share of how much deeper ground may be;
+# sinking speed up to which feet only roll, or slip on slopes [m/s]; rate at which the usual change is learnt [1/s].
 _SLIDES, _TIMES, _AT_FIRST, _DEEPER, _ROLLS, _LEARNT = 0.003, 4.0, 0.01, 0.5, 0.02, 3.0
-# How fast the body moves over feet that do not hold it yet [m/s], and how far at most [m].
+# Speed at which the body shifts over feet that do not hold it yet [m/s]; how far it shifts at most [m].
 _SHIFTS, _FARTHEST = 0.05, 0.08
 HALTING = 0.5
 """Below this pace the robot waits for support."""
@@ -42,12 +43,12 @@ class Search(NamedTuple):
     leg, depth : int, float
         The leg; how far below the expected ground its foot is [m].
     falls, lasts : bool
-        Whether the foot goes down; whether it has not searched for long.
+        Whether the foot is still going down; whether it may search on, as it has not done so for long.
     sunk, raised, leans : float
-        By how much the body has sunk at the foot since that lost its contact; by how much the foot is higher than
-        commanded, where that is measured; by how much the body is lower there than in the attitude to keep [m].
+        How far the body has sunk at the foot since it lost contact; how far the foot is above its command, 0 where that
+        is not measured; how much lower the body is there than in the attitude to keep [m].
     age : float
-        Time since contacts are measured [s].
+        Age of the contacts [s].
     """
 
     leg: int
@@ -70,7 +71,7 @@ class Footing(NamedTuple):
     down : list of bool
         Which feet should stand.
     centre : complex
-        Where the centre of mass is above them, along gravity [m].
+        Where the centre of mass is above the feet, along gravity [m].
     height : float
         Commanded height of the body [m].
     """
@@ -82,7 +83,7 @@ class Footing(NamedTuple):
 
 
 def holds(feet: Sequence[complex], centre: complex) -> bool:
-    """Return whether a point is inside the polygon of some feet, x + iy [m]."""
+    """Return whether a point is inside the support polygon of feet, by a small margin; x + iy [m]."""
     angles = sorted(cmath.phase(foot - centre) for foot in feet)
     if len(angles) < 3:
         return False
@@ -110,7 +111,7 @@ def off_commanded(attitude: RollPitch, state: GaitState) -> RollPitch:
     Parameters
     ----------
     attitude, state : (roll, pitch), GaitState
-        Measured, about the body's axes [rad]; the gait state.
+        Measured roll and pitch, about the body's axes [rad]; the gait state.
     """
     roll, pitch, yaw = state.moved_posture[3:6].tolist()
     off = complex(attitude[0] - roll, attitude[1] - pitch) * cmath.exp(1j * yaw)
@@ -118,7 +119,7 @@ def off_commanded(attitude: RollPitch, state: GaitState) -> RollPitch:
 
 
 def sunk_at(place: complex, tilt: RollPitch, before: RollPitch = (0.0, 0.0)) -> float:
-    """Return by how much a body has sunk at a place by a change of its tilt [m].
+    """Return how far a body has sunk at a place by a change of its tilt [m].
 
     Parameters
     ----------
@@ -131,20 +132,20 @@ def sunk_at(place: complex, tilt: RollPitch, before: RollPitch = (0.0, 0.0)) -> 
 
 
 class Tipping:
-    """Finds the foot at which a robot tips whose contacts are estimated.
+    """Finds the foot at which a robot tips, where contacts are estimated.
 
-    A leg that rests on an edge with its shin bears load like one whose foot stands. The body sinks there: faster than
+    A leg whose shin rests on an edge bears load like one whose foot stands. But the body sinks there, faster than
     slopes tilt it, and farther than at a foot that stands.
 
     Parameters
     ----------
     scale : float
-        By how much lengths are smaller than given, on short legs, 0 to 1.
+        Factor by which lengths are reduced on short legs, 0 to 1.
 
     Attributes
     ----------
     leg : int or None
-        The leg.
+        The leg at whose foot the robot tips; None where it does not.
     """
 
     def __init__(self, scale: float) -> None:
@@ -154,7 +155,7 @@ class Tipping:
 
     @property
     def at_edge(self) -> bool:
-        """Whether the robot has tipped at the leg's foot for long."""
+        """Whether the robot has tipped at the leg's foot for long enough to have met an edge."""
         return self.leg is not None and self._since > _LASTS
 
     def step(self, footing: Footing, depths: Sequence[float], tilt: RollPitch | None, dt: float) -> None:
@@ -183,26 +184,26 @@ class Tipping:
 
 
 class Sinking:
-    """Finds a foot that bears load and sinks against the others: it slides over an edge, its switch still closed.
+    """Finds a foot that bears load and sinks against the others: it slides over an edge with its switch still closed.
 
     Parameters
     ----------
     scale : float
-        By how much lengths are smaller than given, on short legs, 0 to 1.
+        Factor by which lengths are reduced on short legs, 0 to 1.
     """
 
     def __init__(self, scale: float) -> None:
         self._scale, self._usual = scale, _AT_FIRST
-        # How much higher than the mean of the others each foot is, and was at most since the same feet bear load [m].
+        # Height of each foot over the mean of the others, and the greatest one since the same feet have borne load [m].
         self._over, self._highest = dict[int, float](), dict[int, float]()
 
     def step(self, heights: dict[int, float], footing: Footing, dt: float, *, deeper: float) -> int | None:
-        """Return the leg of a foot that sinks, without which the others do not hold the robot.
+        """Return the leg of a foot that sinks while the others alone do not hold the robot; None without one.
 
         Parameters
         ----------
         heights : dict of int to float
-            How high the feet are that bear load, by leg, along gravity [m].
+            Heights of the feet that bear load, by leg, along gravity [m].
         footing, dt, deeper : Footing, float, float
             The feet; time since the last call [s]; how much deeper ground may be than expected [m].
         """
@@ -247,26 +248,26 @@ class Support:
         return self.pace < HALTING
 
     def holds(self, legs: list[int], footing: Footing, *, anew: bool) -> bool:
-        """Return whether feet hold the robot; they are looked at again where they are others, or when asked to.
+        """Return whether feet hold the robot; computed again only for other feet, or when asked to.
 
         Parameters
         ----------
         legs, footing, anew : list of int, Footing, bool
-            Legs whose feet bear load; all feet; whether to look at the same feet again.
+            Legs whose feet bear load; all feet; whether to compute it again for the same feet.
         """
         if anew or legs != self._bearing:
             self._bearing, self.held = legs, holds([footing.places[leg] for leg in legs], footing.centre)
         return self.held
 
     def shift_over(self, legs: list[int], footing: Footing, dt: float, *, scale: float) -> None:
-        """Shift the body over feet that do not hold it yet, as all have come to rest: it would wait for them for ever.
+        """Shift the body over feet that do not hold it yet: with all feet at rest, it would otherwise wait for ever.
 
         Parameters
         ----------
         legs, footing, dt : list of int, Footing, float
-            Legs that stay as others lift off, none for no shift; all feet; time since the last call [s].
+            Legs whose feet stay while others lift off, none for no shift; all feet; time since the last call [s].
         scale : float
-            By how much lengths and speeds are smaller than given, on short legs, 0 to 1.
+            Factor by which lengths and speeds are reduced on short legs, 0 to 1.
         """
         self.shift, self._shifted = 0j, self._shifted * bool(legs)
         if legs and self.halts and self._shifted < scale * _FARTHEST:
@@ -284,7 +285,7 @@ class Support:
         lifts, dt : bool, float
             Whether any foot is due to lift off; length of the tick [s].
         swing_time, most : float
-            Duration of a swing [s]; the pace at most.
+            Duration of a swing [s]; the greatest pace.
         """
         self.waits = lifts and not stays
         self._waited = self._waited + dt if self.waits else 0.0
