@@ -1,4 +1,4 @@
-"""Ground map: heights of the ground that a sensor has given, tied to the standing feet, and what steps make of them."""
+"""Ground map: ground heights from a sensor, tied to the standing feet, and the footholds that are chosen on them."""
 
 from __future__ import annotations
 
@@ -30,38 +30,38 @@ _Feet: TypeAlias = Sequence[tuple[complex, float]]
 
 # How fast the slope of the plane follows the feet [1/s].
 _SLOPE_RATE = 2.0
-# Part of the distance at which a foot may be put down that is kept for its stroke, at least.
+# Least share of the distance at which a foot may be put down that is kept for its stroke.
 _STROKE_SHARE = 0.65
-# How far the body is lowered for deep ground, and from which depth on ground that legs reach is a hole, over the body
-# height.
+# How far the body would be lowered to reach deep ground, and depth from which on ground is a hole even if legs reach
+# it, both over the body height.
 _LOWERED, _DEEPEST = 0.35, 1.2
-# How far off known heights may lie [m].
+# Horizontal error of the known heights that is allowed for [m].
 _OFF = 0.03
-# Swing phase up to which a foothold is chosen, and up to which another one in place of a hole.
+# Swing phase up to which a foothold is chosen, and up to which one in a hole is replaced.
 _CHOOSING, _CHOOSING_AGAIN = 0.3, 0.45
-# A foothold this close to a hole counts as in it [m]: farther away ones are preferred, but may be missing.
+# Distance from a hole up to which a foothold counts as in it [m]: one farther away is preferred where there is any.
 _EDGE = 0.012
-# Slope from which on ground that falls is an edge; legs reach what is lower on less steep ground as they go down.
+# Downward slope above which low ground is behind an edge; down less steep ground, the robot walks until legs reach it.
 _CLIFF = 1.2
-# Room of the body over the ground [m].
+# Clearance of the body over the ground [m].
 _CLEAR = 0.015
-# Points under the body, over half its length and width: a little farther at front and rear.
+# Points under the body, over half its length and width; they reach a little beyond its front and rear.
 _UNDER = (np.linspace(-1.2, 1.2, 9)[:, None] + 1j * np.linspace(-1.0, 1.0, 5)).ravel()
-# How many strokes ahead of its rest foothold a foot will be put down.
+# Places of a foot's next footholds ahead of its rest foothold, in strokes.
 _NEXT = np.array([0.5, 1.0])
 _ALONG_TRIED = (NORMALS_CONJUGATE * TRIED[:, None]).real
 
 
 class GroundMap:
-    """Known heights lie still on the ground; their level is tied to the standing feet anew with each update.
+    """Keeps known heights in place on the ground; their level is tied to the standing feet again with each update.
 
-    So nothing is dead-reckoned for longer than from one reading to the next. Places and heights that are asked for are
-    in the heading frame; where nothing is known, the ground is the plane of the standing feet.
+    So nothing is dead-reckoned for longer than from one reading to the next. Places and heights that are
+    asked for are in the heading frame; where nothing is known, the ground is taken as the plane of the standing feet.
 
     Parameters
     ----------
     scale : float
-        By how much lengths are smaller than given, on short legs, 0 to 1.
+        Factor by which lengths are reduced on short legs, 0 to 1.
 
     Attributes
     ----------
@@ -70,9 +70,9 @@ class GroundMap:
     given : bool
         Whether any heights are known.
     beside : dict of int to complex
-        How far from the foothold of its step each foot in the air is put down, in the heading frame [m].
+        By leg, offset from the foothold of its step at which a foot in the air is put down, in the heading frame [m].
     holes : dict of int to complex
-        Where feet in the air would be put down into a hole, in the heading frame [m].
+        By leg, the foothold of a foot in the air that would be put down into a hole, in the heading frame [m].
     crossing : set of int
         Legs whose feet in the air cross a hole on their way.
     """
@@ -82,21 +82,21 @@ class GroundMap:
         self.plane, self.given, self.beside = FootPlane(), False, dict[int, complex]()
         self.holes, self.crossing = dict[int, complex](), set[int]()
         self._seen: GroundHeights | None = None
-        # How far under the plane of the feet ground is that they step on [m].
+        # How far below the plane of the feet ground may be that they step on [m].
         self._deepest = math.inf
-        # Where in G the middle of the grid is, and its x axis.
+        # Middle of the grid and its x axis, in G.
         self._middle, self._axis = 0j, 1 + 0j
-        # Of the heading frame: where in G, its x axis, how it is inclined, and its height over that of the grid.
+        # The heading frame: its origin and x axis in G, its inclination, and its height among those of the grid [m].
         self._origin, self._turn, self._inclination, self._height = 0j, 1 + 0j, 0j, 0.0
         self._feet: tuple[Shaped[np.ndarray, "n"], Shaped[np.ndarray, "n"]] = np.zeros(0, dtype=complex), np.zeros(0)
 
     def see(self, readings: ValidReadings, state: GaitState) -> None:
-        """Take the heights of readings, in place of those known.
+        """Replace the known heights by those of readings.
 
         Parameters
         ----------
         readings, state : ValidReadings, GaitState
-            The readings; the same heights as before, or None, tell nothing new; the gait state.
+            The readings, whose heights are ignored where they are None or those taken before; the gait state.
         """
         if readings.ground is None or readings.ground is self._seen:
             return
@@ -114,14 +114,14 @@ class GroundMap:
         Parameters
         ----------
         feet : sequence of (complex, float)
-            The feet that bear load: where, and how high, in the heading frame [m].
+            Places and heights of the feet that bear load, in the heading frame [m].
         tilt : (roll, pitch) or None
             By how much the heading frame is tilted [rad].
         state, dt : GaitState, float
             The gait state; time since the last update [s].
         drift, turning : complex, float
-            Velocity with which they move backwards to make up for lost way, in the heading frame [m/s]; how fast the
-            body turns over them to make up for lost heading [rad/s].
+            Velocity with which the feet move backwards to make up for lost way, in the heading frame [m/s]; how fast
+            the body turns over them to make up for lost heading [rad/s].
         """
         (roll, pitch), places, heights = tilt or (0.0, 0.0), [foot for foot, _ in feet], [height for _, height in feet]
         self.plane = fitted_plane(places, heights, self.plane, min(_SLOPE_RATE * dt, 1.0))
@@ -134,7 +134,7 @@ class GroundMap:
             self._tie()
 
     def _rise(self, places: Shaped[np.ndarray, "..."]) -> Shaped[np.ndarray, "..."]:
-        """Return how much higher a level plane is than the heading frame at places [m]."""
+        """Return the height of the tilted heading frame over a level plane through its origin, at places [m]."""
         return np.asarray((places * self._inclination.conjugate()).real)
 
     def _known(self, places: Shaped[np.ndarray, "..."]) -> Shaped[np.ndarray, "..."]:
@@ -143,22 +143,22 @@ class GroundMap:
         return self._seen.at((self._origin + self._turn * places - self._middle) / self._axis)
 
     def _tie(self) -> None:
-        """Find the height of the heading frame on the grid; a foot at an edge may be far off."""
+        """Find the height of the heading frame on the grid by the median: a foot at an edge may be far off."""
         off = self._known(self._feet[0]) - self._feet[1]
         known = off[~np.isnan(off)].tolist()
         self._height = median(known) if known else self._height
 
     def expected(self, places: Shaped[np.ndarray, "..."]) -> Shaped[np.ndarray, "..."]:
-        """Return the heights at which the known ground is expected at places: that of the plane in a hole [m]."""
+        """Return the heights at which the ground is expected at places; in a hole, those of the plane [m]."""
         found, level = self._lies(places), np.asarray(self.plane.at(places))
         return np.where(found > self._floor(places), found, level)
 
     def _floor(self, places: Shaped[np.ndarray, "..."]) -> Shaped[np.ndarray, "..."]:
-        """Return the heights below which known ground is a hole at places [m]: a plane that rises raises no leg."""
+        """Return the heights below which known ground is a hole at places [m]; a rising plane does not raise them."""
         return np.asarray(np.minimum(self.plane.at(places), self.plane.height) - self._deepest)
 
     def _lies(self, places: Shaped[np.ndarray, "..."]) -> Shaped[np.ndarray, "..."]:
-        """Return the known heights at places, those of holes too, and that of the plane where nothing is known [m]."""
+        """Return the known heights at places, those of holes too, and those of the plane where nothing is known [m]."""
         known = self._known(places) - self._height - self._rise(places)
         return np.where(np.isnan(known), np.asarray(self.plane.at(places)), known)
 
@@ -172,12 +172,12 @@ class GroundMap:
         return float(lowest_near(self.expected, np.array(place), within=within)) if self.given else self.plane.at(place)
 
     def choose(self, state: GaitState, reach: Reach, footholds: FootholdTransfer) -> None:
-        """Choose footholds for feet that have lifted off, once in each swing.
+        """Choose footholds for feet that have lifted off, once in each swing, and again in place of a hole.
 
         Parameters
         ----------
         state, reach : GaitState, Reach
-            The gait state; strokes, and between which heights legs reach them.
+            The gait state; strokes, and the heights between which legs reach them.
         footholds : FootholdTransfer
             How far from their rest footholds feet may be put down.
         """
@@ -197,7 +197,7 @@ class GroundMap:
             if again or (leg not in self.beside and 0 < phase < _CHOOSING):
                 kept = np.abs((NORMALS_CONJUGATE * reach.strokes[leg]).real) / 2
                 slack = footholds.placement_bounds[leg] - kept.clip(_STROKE_SHARE * footholds.placement_radii[leg])
-                # Only a foot that has just lifted off is held up: others go down soon.
+                # No hole is reported that comes into sight later in a swing: the foot goes down soon.
                 held, end = leg in self.holes or leg not in self.beside, end - self.beside.get(leg, 0j)
                 self.holes.pop(leg, None)
                 allowed = (slack.clip(0.0) >= _ALONG_TRIED).all(axis=1)
@@ -232,7 +232,7 @@ class GroundMap:
         elevation : float
             Height of the heading frame [m].
         room : (float or None, float)
-            Least and greatest height of the foot in the heading frame [m]; None for the expected one.
+            Least and greatest height of the foot in the heading frame [m]; None for that of the expected ground.
         clears : bool
             Whether a foot that has met an obstacle stays up until it is past that, where the ground is not known.
         """
@@ -245,7 +245,7 @@ class GroundMap:
         return under._replace(way=way, steep=is_steep(self.expected, start, foothold), clears=False)
 
     def rises_ahead(self, reach: Reach) -> tuple[list[float], list[float]]:
-        """Return least and greatest height of the known ground at each leg's next footholds, over the plane's [m].
+        """Return least and greatest ground height at each leg's next footholds, over the plane's at the origin [m].
 
         Parameters
         ----------
@@ -256,7 +256,7 @@ class GroundMap:
         return ahead.min(axis=0).tolist(), ahead.max(axis=0).tolist()
 
     def body_rise(self, half: Sequence[float], height: float) -> float:
-        """Return how much higher than commanded a body is that is clear of the known ground under it [m].
+        """Return how much higher than commanded the body has to be to clear the known ground under it [m].
 
         Parameters
         ----------

@@ -14,86 +14,88 @@ from tarsus.control.transition.foothold_transfer import FootholdTransfer
 
 __all__ = ["SLOW", "MissingGround"]
 
-# Depth of a foot without contact from which on there is a hole, over the body height; how much deeper it is on rough
-# ground, over what that allows.
+# Depth of a foot without contact above which there is a hole, over the body height; on rough ground it is greater by
+# this factor times the depth that the roughness allows.
 _DEEP, _ROUGHLY_DEEP = 0.75, 1.6
-# Depths from which on the walk slows down, and stands still, or goes on slowly with feet at the end of their reach [m].
+# Depths at which the walk begins to slow down, and stands still, besides how much deeper ground may be [m]; least pace
+# while the foot does not go down, at the end of its reach.
 _SLOWS, _STANDS, _SLOWEST = 0.005, 0.02, 0.25
-# A foot that is measured higher than commanded by more is held up by its leg [m]; where it is at less depth than one of
-# these, over the body height and [m], that leg may rest on the edge of a step; how long that lasts until the foot does
-# not search on [s], besides so many times the age of the contacts: on ground that an open switch does not tell of, a
-# foot is held up, too, and other feet tell of that before.
+# A foot that is measured this far above its command is held up by its leg [m]. Where it is at less depth than the
+# greater of the next two, over the body height and [m], that leg may rest on the edge of a step. The foot then stops
+# searching after a time [s] and so many times the age of the contacts: a foot is also held up by ground that its open
+# switch does not report, but by then other feet have told of that.
 _HELD_UP, _STEP, _LOW_STEP, _HELD, _LATER = 0.007, 0.5, 0.05, 0.3, 5.0
-# A foot that lifts the body by more stands on ground that is not felt: the robot does not tip towards it [m].
+# Lift of the body at a foot above which that stands on ground that is not felt: the robot does not tip towards it [m].
 _LIFTS = 0.008
-# A robot that waits on feet that lose contact in turn rocks: where it is raised by more, they are not lowered [m].
+# How far a waiting robot may be raised at a foot that is still lowered: on feet that lose contact in turn it rocks [m].
 _RAISED = 0.005
-# A foot where the robot is off its attitude by more [m] may hold the body: it steps back once, after a long search.
+# How far the body is off its attitude at a foot that may hold it: such a foot steps back once, after a long search [m].
 _LEANS = 0.02
-# A walk that is slower says why.
+# Pace below which the walk says why it is slow.
 SLOW = 0.85
-# How much deeper than expected ground may be at most where it is sure that there is none [m].
+# Missing ground is certain only while ground may be at most this much deeper than expected [m].
 _SURE = 0.0125
-# Where a foot steps back to, from its rest foothold against its way, over how far from there it may stand; with the
-# last, the body backs off as far as it may.
+# How far behind its rest foothold a foot steps back at each try, over the distance from there at which it may stand;
+# with the last try, the body backs off as far as it may.
 _BACK = (0.4, 1.0, 1.0)
-# The body backs off until feet this far from the edge hold it with this margin [m], so far at most [m], so fast [m/s].
+# The body backs off until feet this far from the edge hold it with this margin [m]; greatest way [m], speed [m/s].
 _FIRM, _MARGIN, _BACKS, _SPEED = 0.06, 0.03, 0.08, 0.15
-# A foot this close to its place is there; one that finds no ground at less depth than the second is over no hole [m].
+# Distance from its place up to which a foot is there; depth up to which a foot without ground is not over a hole [m].
 _THERE, _SHALLOW = 0.004, 0.02
-# How often the walk goes on where there may be no hole, after which time [s], and makes up for no lost time then [s].
+# How often the walk goes on where there may be no hole; time until it does, and time then without catching up [s].
 _AGAIN, _WAITS, _CAREFUL = 2, 1.0, 1.5
 
 
 class MissingGround:
-    """Decides where feet step that find no ground or are stopped, how the body backs off, and which twist is refused.
+    """Decides where feet that find no ground or are stopped step, how the body backs off, and which twist is refused.
 
     Parameters
     ----------
     names, scale : sequence of str, float
-        Names of the legs; by how much lengths and speeds are smaller than given, on short legs, 0 to 1.
+        Names of the legs; factor by which lengths and speeds are reduced on short legs, 0 to 1.
 
     Attributes
     ----------
     obstacles : Obstacles
-        Where feet try next that are stopped on their way.
+        Where feet that are stopped on their way try next.
     places : dict of int to complex
-        Where each foot is to stand that steps back, or tries to get past an obstacle, in the heading frame [m].
+        By leg, where a foot that steps back or tries to get past an obstacle is to stand, in the heading frame [m].
     refuses : bool
         Whether the commanded twist leads over an edge or towards an obstacle: the robot stays where it is.
     pace : float
-        Rate of the walk that feet without contact leave, 0 to 1.
+        Greatest rate of the walk that feet without contact allow, 0 to 1.
     back : complex
-        Velocity of the body over its feet, in the heading frame [m/s].
+        Velocity with which the body backs off over its feet, in the heading frame [m/s].
     tips : complex
-        Towards which foot that sinks the robot tips: its direction in the heading frame; 0 without one.
+        Direction in which the robot tips, towards a foot or the edge, in the heading frame; 0 where it does not.
     edge : float
         Commanded depth of a foot that steps back from where its leg may rest on the edge of a step [m]; 0 without one.
     twist : sequence of float
-        How the robot walks [m/s, m/s, rad/s].
+        Twist with which the robot walks [m/s, m/s, rad/s].
     lost : int or None
-        Leg at whose foot a robot tips that its other feet do not hold.
+        Leg at whose foot the robot tips, as the other feet do not hold it; None without one.
     stranded : list of int
-        Legs whose feet have found no ground at any place, of a robot that is to leave the edge: they step first.
+        Legs whose feet have found no ground at any place while the robot is to leave the edge: they step first.
     """
 
     def __init__(self, names: Sequence[str], *, scale: float = 1.0) -> None:
         self.obstacles, self.places, self.stranded = Obstacles(scale), dict[int, complex](), list[int]()
         self.pace, self.back, self.tips, self.edge, self.refuses = 1.0, 0j, 0j, 0.0, False
         self._names, self._scale, self._tries, self._cause = names, scale, [0] * len(names), Cause("")
-        # Whether each foot was only a little below the others as it last stepped back: it is over no hole.
+        # Whether each foot was only slightly below the others when it last stepped back, so not over a hole.
         self._shallow = [False] * len(names)
         self.lost: int | None = None
-        # How long feet that hang have been held up by their legs [s].
+        # By leg, how long a foot without contact has been held up by its leg [s].
         self._held = dict[int, float]()
         self._edge, self._backed, self._again, self._slows = Edge(scale), 0.0, 0, ""
-        # Whether the robot is to stop; whether rest footholds are over a hole; velocity of the way back from it [m/s].
+        # Whether the robot is to stop; whether a rest foothold is over a hole; velocity commanded away from there
+        # [m/s].
         self._stops, self._over, self._leaves = True, False, 0j
         self.twist: Sequence[float] = (0.0, 0.0, 0.0)
 
     @property
     def limitations(self) -> list[Limitation]:
-        """Why the walk slows down, unless the command is refused for it."""
+        """Why the walk slows down, unless the command is refused for that reason."""
         cause = Cause("the foot looks for the ground", self._slows) if self._slows else self._cause
         return [cause.limitation(LimitationKind.GROUND)] if not self.refuses and self.pace < SLOW else []
 
@@ -104,15 +106,15 @@ class MissingGround:
         self.refuses, self._again = False, 0
 
     def turn_to(self, yaw: float) -> None:
-        """Take the direction of the heading frame [rad]: edges and obstacles stay where they are as that turns."""
+        """Take the yaw of the heading frame [rad]: edges and obstacles stay where they are as it turns."""
         self.obstacles.found *= self._edge.turn_to(yaw)
 
     def steps_back(self, leg: int, foot: complex) -> bool:
-        """Return whether a foot, here in the heading frame, is on its way to another place."""
+        """Return whether a foot, now at a place in the heading frame, is on its way to another one."""
         return leg in self.places and abs(self.places[leg] - foot) > self._scale * _THERE
 
     def tries(self, leg: int, foot: complex) -> bool:
-        """Return whether a foot, here in the heading frame, is on its way past an obstacle."""
+        """Return whether a foot, now at a place in the heading frame, is on its way past an obstacle."""
         return self.obstacles.tries(leg) and self.steps_back(leg, foot)
 
     def gives_up(self, leg: int) -> bool:
@@ -120,11 +122,11 @@ class MissingGround:
         return self._tries[leg] > len(_BACK)
 
     def is_raised(self, by: float) -> bool:
-        """Return whether a robot that waits at a hole is that much too high at a foot [m]: it goes no further down."""
+        """Return whether a robot waiting at a hole is too high at a foot by this [m]: the foot goes no lower."""
         return by > self._scale * _RAISED and self.refuses and not (self.tips or self.places)
 
     def tipped(self, leg: int, foot: complex) -> None:
-        """Take note of an edge on which a leg rests: the robot has tipped at its foot, here in the heading frame."""
+        """Take note of an edge on which a leg rests: the robot has tipped at its foot, a place in the heading frame."""
         if not self._edge.way:
             self._edge.way, self._again = foot / abs(foot), max(self._again, _AGAIN - 1)
             self._cause = Cause("the robot tips at the foot", self._names[leg])
@@ -154,7 +156,7 @@ class MissingGround:
         for leg in [leg for leg in self.places if leg not in searching or leg in past]:
             self.drop(leg)
             self._tries[leg] = 0
-        # A robot that has tipped goes back until it is held well; one none of whose feet stands is being lifted.
+        # A robot that has tipped goes back until it is held with a margin; one on none of its feet is being lifted.
         standing = [foot for foot, on in zip(feet, stands, strict=True) if on]
         held = not (searches and standing) or holds(standing, centre + self._scale * _MARGIN * self.tips)
         self.pace, self.back, self.tips, self._slows, self.edge = 1.0 - self.refuses, 0j, 0j, "", 0.0
@@ -170,21 +172,21 @@ class MissingGround:
             slowest = 0.0 if falls else _SLOWEST
             pace = max(1 - (depth - slows) / (deep - slows), slowest)
             self.pace, self._slows = min((self.pace, self._slows), (pace, self._names[leg]))
-            # At another place, a foot does not search for long at the end of its reach.
             held_up = raised > self._scale * _HELD_UP and depth - raised < max(_STEP * height, self._scale * _LOW_STEP)
             self._held[leg] = (before.get(leg, 0.0) + dt) * (held_up and not falls)
             long = not lasts or self._held[leg] > _HELD + _LATER * age
+            # A foot that has stepped to another place does not search for long there at the end of its reach.
             hangs = not falls and (depth > deep or not lasts) if leg in self.places else long
             missing = depth - max(raised, 0.0) > _DEEP * height + _ROUGHLY_DEEP * deeper or hangs
             missing &= abs(leans) < max(self._scale * _LEANS, deeper) or (held and not (lasts or leg in self.places))
-            # The other feet hold a robot that does not sink or lean far.
+            # The robot tips where the other feet do not hold it, or where it has sunk or leans far at the foot.
             unheld = not held and sunk > -self._scale * _LIFTS and depth + max(sunk, 0.0) > deep
             if unheld or sunk > deep or min(leans, depth) > deep:
                 self._tip(way)
             if missing and not (self.steps_back(leg, feet[leg]) or self.gives_up(leg)):
                 self.edge = depth if held_up else self.edge
                 self._step_back(leg, depth, way, footholds, sure=sure and not self.edge)
-        # Over no hole, unless the robot tips, are feet only a little below the others.
+        # Feet only slightly below the others are not over a hole, unless the robot tips.
         shallow = all(self._shallow[leg] and not self.tips for leg in self.places)
         self._go_on(shallow, dt)
         if self.places:
@@ -192,7 +194,7 @@ class MissingGround:
         self._back_off(footing, shallow, dt)
 
     def _go_on(self, shallow: bool, dt: float) -> None:
-        """Decide whether the walk goes on where it has waited, on feet none of which is far below the others."""
+        """Decide whether the walk goes on where it has waited, with no foot far below the others."""
         self._edge.since = (self._edge.since + dt) * (shallow and all(map(self.gives_up, self.places)))
         if self.refuses and not self._stops and self._again < _AGAIN and self._edge.since > _WAITS:
             self._again += 1
@@ -201,14 +203,14 @@ class MissingGround:
             self._again, self.obstacles.found = 0, 0j
 
     def _back_off(self, footing: Footing, shallow: bool, dt: float) -> None:
-        """Decide with which velocity the body backs off, or leaves an edge."""
+        """Decide the velocity with which the body backs off, or leaves an edge."""
         (feet, stands, centre, _), speed, most = footing, self._scale * _SPEED, self._scale * _BACKS
         if not self.places:
-            # A robot that tips where a foot sinks goes back at once.
+            # A robot that tips goes back at once; so does one that is to stop with a rest foothold over a hole.
             velocity = -speed * (self.tips or self._edge.way * (self._stops and self._over))
             self._backed *= bool(velocity)
         elif self._leaves:
-            # The other feet may not hold a robot that steps: the body moves over them, as far again.
+            # The other feet may not hold the robot while one steps: the body moves over them, by as much again at most.
             velocity, most = self._leaves * min(speed / abs(self._leaves), 1.0), 2 * most
         else:
             along = [self._edge.along(feet[leg]) for leg in self.places]
@@ -217,27 +219,27 @@ class MissingGround:
             # A robot that turns meets the edge anew with each step, unless it goes back.
             enough = max(self._tries) < len(_BACK) and not self._edge.turns
             enough &= holds(firm, centre + self._scale * _MARGIN * self._edge.way)
-            # From a foot behind the body, it would back off over the hole; where legs do not reach, there is none.
+            # From feet behind it, the body would back off over the hole; ground that is only slightly lower is none.
             backs = not shallow and max(along) > self._edge.along(centre) and not (self.obstacles.stops or enough)
             velocity = -speed * self._edge.way * backs
         self.back = velocity * (self._backed < most)
         self._backed += abs(self.back) * dt
 
     def _step_back(self, leg: int, depth: float, way: complex, footholds: FootholdTransfer, *, sure: bool) -> None:
-        """Choose a place behind its rest foothold for a foot on this way that finds no ground at this depth [m]."""
+        """Choose a place behind its rest foothold for a foot without ground at a depth [m]; `way` leads to the edge."""
         self._tries[leg] += 1
         if self._tries[leg] == 1 and not self.refuses:
             self._edge.way = way
         back = _BACK[min(self._tries[leg], len(_BACK)) - 1] * footholds.placement_radii[leg]
         self.places[leg] = complex(footholds.rest[leg]) - back * self._edge.way
-        # Ground that is only a little lower, or rough, may be reached with other footholds.
+        # Ground that is only slightly lower, or rough, may be reached with other footholds.
         reached, shallow = f"no ground within {1e3 * depth:.0f} mm below the other feet", depth < self._scale * _SHALLOW
         self._shallow[leg] = shallow
         self._cause = Cause("the ground is lower than the leg reaches" if shallow else reached, self._names[leg])
         self._again += _AGAIN if sure and not shallow else 0
 
     def _tip(self, way: complex) -> None:
-        """Take note that the robot tips this way: no foot tries to get past an obstacle then."""
+        """Take note that the robot tips in this direction: no foot tries to get past an obstacle then."""
         self.tips = way
         for leg in list(self.obstacles.stops):
             self.drop(leg)
@@ -248,7 +250,7 @@ class MissingGround:
         self.places.pop(leg, None)
 
     def stopped(self, leg: int, foot: complex, goal: complex, bow: complex) -> complex:
-        """Decide where a foot tries next that is stopped; return the way on which it is drawn back [m].
+        """Decide where a foot that is stopped tries next; return the way by which it is drawn back [m].
 
         Parameters
         ----------
@@ -264,18 +266,18 @@ class MissingGround:
         return start - foot
 
     def sees(self, ground: GroundMap, rest: Sequence[complex]) -> None:
-        """Take note of feet in the air that would be put down into a hole, and of their rest footholds [m] in one."""
+        """Take note of feet in the air that would be put down into a hole, and of rest footholds [m] in one."""
         self._over = any(leads_towards(at, self._edge.way) and ground.is_hole(at) for at in rest)
         for leg, place in ground.holes.items():
             self._edge.way = direction(place - rest[leg], rest[leg])
             self._cause, self._again = Cause("no ground within reach at its next foothold", self._names[leg]), _AGAIN
 
     def held(self, shift: complex) -> complex:
-        """Return the part of a velocity of all feet by which the body would go on where it may not [m/s]."""
+        """Return the part of a velocity of all feet that would move the body on towards a refused edge [m/s]."""
         return min(self._edge.along(shift), 0.0) * self._edge.way if self.refuses else 0j
 
     def limit(self, request: TwistRequest, grant: TwistGrant) -> TwistGrant:
-        """Return the grant, without a twist that leads over an edge or towards an obstacle; another one ends that."""
+        """Return the grant, with no twist over an edge or towards an obstacle; any other twist ends the refusal."""
         velocity = complex(*request.twist[:2])
         self._stops = not any(request.twist)
         self.refuses = leads_towards(velocity, self._edge.way) or (self._stops and self._over)
@@ -287,5 +289,5 @@ class MissingGround:
             self.drop(leg)
         if any(request.twist) and not self.places and self._edge.way:
             self._edge.leave(self.obstacles.found)
-        # Where there was an edge, the ground may be missing once more.
+        # Where there was an edge, the ground may be missing once more: lost time is not made up for.
         return grant.at_most(1.0) if self._again and self._edge.since < _CAREFUL else grant
