@@ -12,37 +12,39 @@ from tarsus.control.terrain.support import Footing, holds, sunk_at
 
 __all__ = ["FootContacts"]
 
-# Which feet something holds for.
+# One flag for each foot.
 _Feet: TypeAlias = Sequence[bool]
 
-# A foot that has been without contact for longer has left the ground, or has lost it [s].
+# Time without contact after which a foot has left the ground, or has lost it [s].
 _LOST = 0.03
-# A foot that has been without contact for no longer still counts as support [s].
+# A foot still counts as support this long after its contact is lost [s].
 _GRACE = 0.1
-# How long a foot that lifts off soon may be without contact, and still stand: its load may be gone before [s].
+# How long a foot that is about to lift off still stands without contact: its load may be gone before [s].
 _LEAVES = 0.15
-# How long a foot that should stand looks for the ground, and the body is lowered for it [s].
+# How long a foot that should stand searches for the ground, and the body is lowered for it [s].
 _SEARCH = 1.5
-# How long a foot has stood that may lose contact for that time and still be support [s].
+# Time in contact after which a foot has stood, and may lose contact for a while and still be support [s].
 _SETTLED = 0.05
-# By how much a foot lifts the body whose switch stays open, at least, and where the others do not hold the robot [m].
+# Least rise of the body at a foot for its switch to be taken as stuck open; the same where the other feet do not hold
+# the robot [m].
 _LIFTS, _LIFTS_ALONE = 0.003, 0.008
-# How long other feet lose contact, while a foot that should stand has none, until its switch is taken to be open [s]; a
-# foot that lifts the body more counts for more, up to this factor.
+# How long other feet lose contact, while a foot that should stand has none, before its switch is taken as stuck open
+# [s]; greatest factor by which that time counts more where the foot lifts the body more.
 _OPEN_AFTER, _MOST_LIFT = 0.4, 4.0
-# How long feet that do not hold the robot bear it, until another one does [s], and how far it moves there if not [m].
+# How long the robot stays up on feet that do not hold it before another foot is taken to hold it [s]; how far it moves
+# at that foot if it tips instead [m].
 _UNHELD, _TIPS = 0.15, 0.012
-# How long that one has had no contact: the switch of one that has just lost it works [s].
+# Least time without contact of that foot: the switch of a foot that has just lost contact works [s].
 _NEVER = 0.3
-# By how much a robot that does not tip sinks at a foot without contact, besides how much deeper ground may be [m].
+# How far a robot that does not tip may sink at a foot without contact, besides how much deeper ground may be [m].
 _SINKS = 0.01
-# How fast it may sink, at a foot whose switch is taken to be open, while readings are late [m/s].
+# How fast it may sink besides, over the age of the contacts, at a foot whose switch is taken as stuck open [m/s].
 _FALLS = 0.4
-# In how many swings in a row, or ways back from an obstacle, contact does not cease where a switch stays closed.
+# Swings in a row, or retreats from an obstacle, without loss of contact after which a switch is taken as stuck closed.
 _STAYS_CLOSED = 3
-# After how many landings a switch stays open for sure: a shin does not rest on an edge for that long.
+# Landings without contact after which a switch is surely stuck open: a shin does not rest on an edge for that long.
 _SURELY_OPEN = 2
-# Fewer feet bear no robot, unless something else holds it.
+# Fewer feet cannot bear the robot: something else holds it.
 _FEWEST = 2
 
 
@@ -52,7 +54,7 @@ class FootContacts:
     Parameters
     ----------
     legs, scale : int, float
-        Number of legs; by how much lengths are smaller than given, on short legs, 0 to 1.
+        Number of legs; factor by which lengths are reduced on short legs, 0 to 1.
 
     Attributes
     ----------
@@ -61,34 +63,35 @@ class FootContacts:
     lifted : list of bool
         Whether a swinging foot has been without contact since it lifted off.
     standing : list of bool
-        Whether each foot that should stand does, but for the shortest of interruptions.
+        Whether each foot that should stand does; the shortest interruptions do not count.
     age, estimated : float, bool
-        Time since the contacts, with what the joints lag more than usual [s]; whether they are estimated by joint
-        angles.
+        Age of the contacts, or by how much the joints lag more than usual where that is longer [s]; whether contacts
+        are estimated by joint angles.
     sunk : list of float
-        By how much the body has sunk at each foot by its tilt since that lost its contact [m].
+        How far the body has sunk by its tilt at each foot since that foot lost contact [m].
     hovering : list of int
-        Legs whose feet have landed above the ground, as their switches stay closed: they bear no load.
+        Legs whose feet have landed above the ground because their switches are stuck closed: they bear no load.
     """
 
     def __init__(self, legs: int, *, scale: float = 1.0) -> None:
         self.estimator = ContactEstimator(legs)
         self.lifted, self.standing, self.age = [False] * legs, [True] * legs, 0.0
         self.hovering = list[int]()
-        # Which feet were to stand; in how many swings in a row each switch has stayed closed; how often its foot has
-        # landed since it was taken to be open.
+        # Which feet were to stand; in how many swings in a row each switch has stayed closed; how often each foot has
+        # landed since its switch was taken as stuck open.
         self._down: _Feet = [True] * legs
         self._closed, self._landings = [_STAYS_CLOSED] * legs, [0] * legs
         self.estimated, self._scale, self._unheld, self._tilt = False, scale, 0.0, (0.0, 0.0)
         # The last tilt that was measured, and that of each foot when it lost its contact [rad].
         self._last: RollPitch | None = None
         self._tilts, self.sunk = [(0.0, 0.0)] * legs, [0.0] * legs
+        # By foot: time without contact, evidence of a switch stuck open, time in contact, time of search [s].
         self._without, self._evidence, self._settled, self._searched = ([0.0] * legs for _ in range(4))
 
     def step(
         self, readings: Contacts, down: _Feet, dt: float, *, count: int, lands: _Feet, leaving: _Feet, rests: bool
     ) -> None:
-        """Take in the contacts of one tick, or of some in which they are the same.
+        """Take in the contacts of one tick, or of several in which they are the same.
 
         Parameters
         ----------
@@ -99,16 +102,16 @@ class FootContacts:
         dt, count : float, int
             Time since the last tick [s]; number of ticks.
         lands : sequence of bool
-            Which of them look for the ground: none on its way past an obstacle, or of a robot that is carried.
+            Which of them search for the ground: not those on their way past an obstacle, and none of a carried robot.
         leaving : sequence of bool
-            Which feet are to lift off soon: once these have stood, they are not lowered where others take their load.
+            Which feet are to lift off soon: those that have stood are not lowered where others take their load.
         rests : bool
-            Whether the robot stands still and is held by the feet that bear load: those that have stood stay, then.
+            Whether the robot stands still, held by the feet that bear load: feet that have stood then stay.
         """
         self.estimator.step(readings, dt, count=count)
         for leg, (on, leaves) in enumerate(zip(down, leaving, strict=True)):
             if self.estimator.known[leg] and not self.estimator.touching[leg]:
-                # A foot that stands has lost its contact in the last tick: before that, all was as planned.
+                # A foot on the ground has lost contact in the last of the ticks: before that, all was as planned.
                 self._without[leg] += dt / count if on and not self._without[leg] else dt
             else:
                 self._without[leg], self._evidence[leg], self._landings[leg] = 0.0, 0.0, 0
@@ -125,7 +128,7 @@ class FootContacts:
             self.lifted[leg] = not on and (self.lifted[leg] or self._without[leg] > _LOST)
             stays = rests or (leaves and self._without[leg] < _LEAVES)
             self.standing[leg] = self._bears(leg) or (stays and self._settled[leg] > _SETTLED)
-            # Feet of a robot that rests are hardly lowered: they wait.
+            # Feet of a robot that rests are hardly lowered: they wait, and do not search.
             searches = lands[leg] and not (rests or self.standing[leg])
             self._searched[leg] = (self._searched[leg] + dt) * searches
         self._down = down
@@ -133,7 +136,7 @@ class FootContacts:
     def find_open(
         self, footing: Footing, tilt: RollPitch | None, dt: float, *, low: list[bool], depths: Sequence[float]
     ) -> None:
-        """Find a switch that stays open: a foot that pushes on the ground lifts the body off others.
+        """Find a switch that is stuck open: its foot pushes on the ground and lifts the body off other feet.
 
         Parameters
         ----------
@@ -142,8 +145,9 @@ class FootContacts:
         tilt, dt : (roll, pitch) or None, float
             Measured, off the attitude to keep [rad], None where it is not; time since the last tick [s].
         low, depths : list of bool, sequence of float
-            Which feet may bear load that is not felt: without one of them, only a foot that has lifted the body does
-            that the others do not hold. How far below the expected ground they are [m]: the deepest has lifted it.
+            Which feet may bear load that is not felt. Where one of those that should stand may not, only a foot that
+            lifts a body which the others do not hold is found. How far below the expected ground the feet are [m]: the
+            deepest is the one that lifts the body.
         """
         self._follow(footing.places, tilt)
         alone = self._lifting_alone(footing._replace(down=low), tilt)
@@ -155,7 +159,7 @@ class FootContacts:
             self._balance(footing, tilt, dt)
 
     def _follow(self, places: Sequence[complex], tilt: RollPitch | None) -> None:
-        """Find by how much the body has sunk at each foot since that lost its contact."""
+        """Find how far the body has sunk at each foot since that foot lost contact."""
         first, self._last = self._last is None, tilt or self._last
         last = self._last or (0.0, 0.0)
         for leg, place in enumerate(places):
@@ -164,7 +168,7 @@ class FootContacts:
             self.sunk[leg] = sunk_at(place, last, self._tilts[leg])
 
     def _lifting(self, down: Sequence[bool], tilt: RollPitch | None) -> dict[int, float]:
-        """Return for legs whose feet have lifted the body, while others lost contact, for how much that counts."""
+        """Return the weight of evidence, by leg, that a foot without contact lifts the body as others lose theirs."""
         if not any(on and 0.0 < time <= _GRACE for on, time in zip(down, self._without, strict=True)):
             return {}
         legs = [leg for leg, on in enumerate(down) if on and self._without[leg] > _GRACE]
@@ -174,12 +178,12 @@ class FootContacts:
         return {leg: min(lift, _MOST_LIFT) for leg, lift in lifts.items() if lift >= 1.0}
 
     def _lifting_alone(self, footing: Footing, tilt: RollPitch | None) -> dict[int, float]:
-        """Return the same for legs whose feet have lifted the body that the others do not hold, but would with one."""
+        """Return the same for feet that lift a body which the others do not hold without, but would with that foot."""
         places, down, centre, _ = footing
         bears = [places[leg] for leg, on in enumerate(down) if on and self._bears(leg)]
         without = [leg for leg, on in enumerate(down) if on and not self._bears(leg)]
         least = self._scale * _LIFTS_ALONE
-        # A robot that sinks at another foot is not held up by one of them.
+        # A robot that sinks at one foot without contact is not held up by another one.
         sinks = any(self.sunk[leg] > least / 2 for leg in without)
         if tilt is None or not without or sinks or len(bears) < _FEWEST or holds(bears, centre):
             return {}
@@ -188,7 +192,7 @@ class FootContacts:
         return dict.fromkeys(holding, _MOST_LIFT)
 
     def _balance(self, footing: Footing, tilt: RollPitch, dt: float) -> None:
-        """Find a switch that stays open: a robot that does not tip stands on a foot that it does not feel."""
+        """Find a switch that is stuck open: a robot that does not tip stands on a foot that it does not feel."""
         missing = [leg for leg, on in enumerate(footing.down) if on and not self.standing[leg]]
         standing = [footing.places[leg] for leg, on in enumerate(footing.down) if on and leg not in missing]
         if not missing or holds(standing, footing.centre):
@@ -212,7 +216,7 @@ class FootContacts:
         most = deeper + self._scale * _SINKS
         legs = [leg for leg, on in enumerate(footing.down) if on]
         for leg in legs:
-            # A robot does not sink at a foot that stands: it was no switch that stays open, but a shin on an edge.
+            # A robot does not sink at a foot that stands: the switch is not stuck, but a shin rests on an edge.
             unsure = self.is_open(leg) and self._landings[leg] < _SURELY_OPEN
             if unsure and self.sunk[leg] > most + _FALLS * self.age:
                 self._evidence[leg] = 0.0
@@ -223,11 +227,11 @@ class FootContacts:
         return max(sinks, key=self.sunk.__getitem__)
 
     def is_open(self, leg: int) -> bool:
-        """Return whether a contact is missing that other feet tell of: that of a switch that stays open."""
+        """Return whether a switch is taken as stuck open: other feet tell of a contact that it does not report."""
         return self._evidence[leg] > _OPEN_AFTER
 
     def is_known(self, leg: int) -> bool:
-        """Return whether a contact is measured, by a switch that works."""
+        """Return whether a foot's contact is measured, by a switch that works."""
         return self.estimator.known[leg] and not (self.is_open(leg) or self.is_closed(leg))
 
     def stands(self, leg: int) -> bool:
@@ -239,15 +243,15 @@ class FootContacts:
         return self._closed[leg] == 0
 
     def is_closed(self, leg: int) -> bool:
-        """Return whether contact tells nothing, as it does not cease while the foot swings."""
+        """Return whether a switch is taken as stuck closed: its contact does not cease while the foot swings."""
         return self._closed[leg] >= _STAYS_CLOSED
 
     def draws_back(self, leg: int) -> None:
-        """Take note of a foot that draws back from an obstacle: contact ceases then, unless a switch stays closed."""
+        """Take note of a foot that draws back from an obstacle: contact ceases then, unless its switch is stuck."""
         self._closed[leg] = min(self._closed[leg] + 1, _STAYS_CLOSED)
 
     def _bears(self, leg: int) -> bool:
-        """Return whether a foot bears load, but for the shortest of interruptions."""
+        """Return whether a foot bears load; the shortest interruptions do not count."""
         return self._without[leg] <= _LOST or self.is_open(leg)
 
     def touches(self, leg: int) -> bool:
@@ -255,11 +259,11 @@ class FootContacts:
         return (self._without[leg] <= 0.0 or self.is_open(leg)) and leg not in self.hovering
 
     def feels(self, leg: int) -> bool:
-        """Return whether a foot touches the side of an obstacle, or rests on it: estimates do not tell."""
+        """Return whether a foot touches the side of an obstacle, or rests on it: estimated contacts do not tell."""
         return self.estimator.touching[leg] and not self.estimated
 
     def seeks(self, leg: int) -> bool:
-        """Return whether a foot that should stand has no contact, and has not looked for the ground for long."""
+        """Return whether a foot that should stand does not, and has not searched for the ground for long."""
         return not self.standing[leg] and self._searched[leg] < _SEARCH
 
     def supports(self, leg: int) -> bool:

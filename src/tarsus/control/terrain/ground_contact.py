@@ -23,23 +23,23 @@ __all__ = ["hovering", "met_ground", "not_sunk", "put_down", "supporting"]
 
 # Swing phases from which on contact is a collision, and from which on it is the ground.
 _CLEAR, _LANDING = 0.12, 0.55
-# How far a foot has risen that meets an obstacle, and one whose contact has not ceased since lift-off [m].
+# Rise since lift-off from which a contact is an obstacle; the same while the switch has not opened since then [m].
 _LIFTED, _RISEN = 0.01, 0.02
-# After a collision: how much higher the foot rises [m], in which time [s], how far it is drawn back [m], and how fast
-# at first, over the mean speed: a stiff leg would drag on the obstacle as it rises, and pull the body down.
+# After a collision: how much higher the foot rises [m], in what time [s], how far it is drawn back [m], and its initial
+# speed over the mean one: a stiff leg would drag on the obstacle as it rises, and pull the body down.
 _HIGHER, _RISING, _DRAWN_BACK, _AT_ONCE = 0.04, 0.12, 0.008, 3.0
-# A foot that goes down and touches something again, closer to its foothold than the first or farther past its collision
-# than the second, has met the ground [m]; the speed with which a foot is drawn back [m/s].
+# A descending foot that touches something again has met the ground if it is closer to its foothold than the first, or
+# farther past its collision than the second [m]; speed at which a foot that is stopped again is drawn back [m/s].
 _SHORT, _PAST, _DRAWS_BACK = 0.02, 0.03, 1.0
-# A foot that is deeper, on even ground, bears no load that is not felt, whatever its shin rests on [m]; nor does one on
-# rough ground that is this deep, over the body height.
+# Depth on even ground from which a foot bears no load that is not felt, whatever its shin rests on [m]; greatest such
+# depth on rough ground, over the body height.
 _HANGS, _HANGS_LOW = 0.042, 0.9
-# Nor does one without contact that is this far over the expected ground, as before a wall: it is still to go down [m].
+# Height over the expected ground from which a foot without contact bears none either, as before a wall [m].
 _HIGH = 0.03
-# A foot without contact is no support where the body is lower than in its attitude by more, nor one whose rest foothold
-# is farther ahead: others have not been there [m].
+# A foot without contact does not count as support where the body is lower than in its attitude by more than the first,
+# or its rest foothold is farther ahead than the second, where no other foot has been [m].
 _SINKS, _AHEAD = 0.01, 0.03
-# How far a foot is behind its command that an obstacle stops again, by its coxa, on its way past it [m].
+# How far behind its command a foot is when an obstacle stops it again by its coxa, on its way past it [m].
 _PUSHES = 0.03
 
 
@@ -51,8 +51,8 @@ def met_ground(
     Parameters
     ----------
     state, body : GaitState, BodyMotion
-        The gait state; contacts, expected ground, reach and how far feet are from their commands. Its roughness takes
-        note of footholds and collisions.
+        The gait state; contacts, expected ground, reach, and how far feet are from their commands; its roughness
+        takes note of footholds and collisions.
     missing, stopped : MissingGround, list of int
         Decides where feet that are stopped again try next; legs that are stopped on their way.
     timing, pace : StepTiming, float
@@ -79,12 +79,12 @@ def met_ground(
             rises = foot.drawn_back is not None and phase <= foot.top_phase
             if tells and (rises or not contacts.touches(leg)):
                 continue
-            # It touched the ground a moment ago, when it was higher.
+            # The foot touched the ground a moment ago, when it was higher.
             over = float(state.ground_height[leg]) - elevation - tells * contacts.age * min(foot.speed, 0.0)
             expected = body.ground.at(places[leg])
             if tells or over <= expected + ROUNDING:
                 if tells:
-                    # A body that sinks at the foot by its tilt meets the ground sooner.
+                    # Where the body sinks by its tilt, the foot meets the ground sooner: that is no roughness.
                     off, sunk = over - expected, max(contacts.sunk[leg], 0.0)
                     body.roughness.landed(min(off, max(off - sunk, 0.0)))
                 state = _landed(state, leg, timing, pace)
@@ -105,7 +105,7 @@ def put_down(state: GaitState, *, timing: StepTiming, pace: float) -> GaitState:
         The gait and its frequency; rate of the steps, 0 to 1.
     """
     swings = ~state.down
-    # Feet that are far from their footholds are still due to lift off.
+    # Feet in the first part of their swing stay due to lift off.
     state = state._replace(step_number=state.step_number - (swings & (state.swing_phase < _LANDING)))
     for leg in np.flatnonzero(swings).tolist():
         state = _landed(state, leg, timing, pace)
@@ -114,7 +114,7 @@ def put_down(state: GaitState, *, timing: StepTiming, pace: float) -> GaitState:
 
 
 def _landed(state: GaitState, leg: int, timing: StepTiming, pace: float) -> GaitState:
-    """Return the state with a foot put down where it is; what speed it has, it loses soon."""
+    """Return the state with a foot put down where it is; the speed that it has decays soon."""
     rate = timing.frequency / (1 - timing.gait.duty_factor - float(state.lift_delay[leg]))
     slide = complex(state.swing_velocity[leg]) * rate * pace
     velocity, acceleration = state.swing_velocity.copy(), state.swing_acceleration.copy()
@@ -127,8 +127,8 @@ def _landed(state: GaitState, leg: int, timing: StepTiming, pace: float) -> Gait
 
 def _collides(state: GaitState, leg: int, contacts: FootContacts, *, scale: float, stopped: bool = False) -> bool:
     """Return whether a foot that feels contact in the first half of its swing has met an obstacle."""
-    # A contact is that of a moment ago, and the foot lags behind its command: it was lower. A body that sinks at the
-    # foot by its tilt sets it down.
+    # The contact is that of a moment ago, and the foot lags behind its command: it was lower then. A body that sinks by
+    # its tilt sets the foot down.
     then = float(state.ground_height[leg]) - max(state.felt[leg].speed, 0.0) * (contacts.age + USUAL_LAG)
     then -= max(contacts.sunk[leg], 0.0)
     least = scale * (_LIFTED if stopped or contacts.lifted[leg] else _RISEN)
@@ -136,14 +136,14 @@ def _collides(state: GaitState, leg: int, contacts: FootContacts, *, scale: floa
 
 
 def _stands_below(state: GaitState, leg: int, contacts: FootContacts, *, scale: float) -> bool:
-    """Return whether a foot on its way down has met ground no higher than it came from: it would lift the body."""
+    """Return whether a foot on its way down has met ground lower than an obstacle: going on, it would lift the body."""
     meets = contacts.estimator.touching[leg] and contacts.lifted[leg] and state.felt[leg].speed < 0.0
     down = state.swing_phase[leg] >= state.felt[leg].top_phase
     return meets and down and not _collides(state, leg, contacts, scale=scale)
 
 
 def _collides_again(state: GaitState, leg: int, *, side: bool, stopped: bool, scale: float) -> bool:
-    """Return whether a foot that has risen after a collision has not got past the obstacle."""
+    """Return whether a foot that has risen after a collision meets the obstacle again."""
     start, foot, goal = state.felt[leg].drawn_back, complex(state.foot[leg]), complex(state.foothold[leg])
     rises = state.swing_phase[leg] <= state.felt[leg].top_phase
     # A foot that steps in place meets no obstacle on its way.
@@ -157,14 +157,14 @@ def _collides_again(state: GaitState, leg: int, *, side: bool, stopped: bool, sc
 
 
 def _rising_again(state: GaitState, leg: int, body: BodyMotion, timing: StepTiming) -> GaitState:
-    """Return the state with a foot that lags behind its command: it draws back from an obstacle and rises higher."""
+    """Return the state in which a foot that has met an obstacle is drawn back from where it is, and rises higher."""
     height, foot, foothold = float(state.ground_height[leg]), complex(state.foot[leg]), complex(state.foothold[leg])
     reach = body.reach
     highest = state.elevation + reach.highest_on_way(leg, state.in_heading(foot), state.in_heading(foothold))[0]
     way, phase = foothold - foot, float(state.swing_phase[leg])
     rises = min(_RISING / timing.swing_time, 1.0 - phase)
     back = body.tracking_error(state, leg) - reach.scale * _DRAWN_BACK * way / max(abs(way), 1e-9)
-    # The top is NaN, and not the greater one, of a foot that has had none.
+    # The top of a foot that has had none is NaN, which is not greater than its height.
     top = min(max(height, state.felt[leg].top) + reach.scale * _HIGHER, max(highest, height))
     felt = _with(state.felt, leg, top=top, top_phase=phase + rises, drawn_back=foot + back)
     velocity, acceleration = state.swing_velocity.copy(), state.swing_acceleration.copy()
@@ -173,7 +173,7 @@ def _rising_again(state: GaitState, leg: int, body: BodyMotion, timing: StepTimi
 
 
 def _trying_again(state: GaitState, leg: int, missing: MissingGround, body: BodyMotion, after: GaitState) -> GaitState:
-    """Return the state with a foot that is stopped again: it is drawn back, and tries again while the walk stands."""
+    """Return the state in which a foot that is stopped again is drawn back, and tries again while the walk stands."""
     reach, height, turn = body.reach, float(state.ground_height[leg]), cmath.exp(1j * state.yaw)
     foot, goal = (state.in_heading(complex(places[leg])) for places in (state.foot, state.foothold))
     foot += body.tracking_error(state, leg) / turn
@@ -186,7 +186,7 @@ def _trying_again(state: GaitState, leg: int, missing: MissingGround, body: Body
 
 
 def _stopped_again(state: GaitState, leg: int, missing: MissingGround, body: BodyMotion, *, stopped: bool) -> GaitState:
-    """Return the state with a foot that meets an obstacle as it steps past it; its switch may stay closed."""
+    """Return the state in which a foot meets an obstacle on its way past it, and tries again if its switch works."""
     foot = state.felt[leg]
     pushes = body.contacts.feels(leg) or abs(body.tracking_error(state, leg)) > body.reach.scale * _PUSHES
     if foot.top > float(state.ground_height[leg]) or foot.slide or not pushes:
@@ -204,17 +204,17 @@ def _with(feet: Sequence[FeltFoot], leg: int, **values: Any) -> list[FeltFoot]:
 
 
 def not_sunk(state: GaitState, body: BodyMotion, footing: Footing, *, tips: bool) -> list[bool]:
-    """Return which feet should stand and may bear load that is not felt.
+    """Return which of the feet that should stand may bear load that is not felt.
 
-    None may while one of them is deep, or at the end of its reach: its leg may rest on an edge. One that is high over
-    the ground does not, as of a robot that leans against a wall.
+    None may while one of them is deep, or at the end of its reach: its leg may rest on an edge. A foot high over the
+    ground does not, as on a robot that leans against a wall.
 
     Parameters
     ----------
     state, body : GaitState, BodyMotion
         The gait state; contacts, expected ground, roughness and reach.
     footing, tips : Footing, bool
-        The feet that should stand; whether the robot tips or feet step back: then, none may.
+        The feet that should stand; whether the robot tips or feet step back, where none may.
     """
     ground, scale, stands, low = body.ground, body.reach.scale, body.contacts.standing, list[bool]()
     most, deep = min(scale * _HANGS + body.roughness.deeper, _HANGS_LOW * footing.height), tips
@@ -222,14 +222,14 @@ def not_sunk(state: GaitState, body: BodyMotion, footing: Footing, *, tips: bool
         place, on = footing.places[leg], footing.down[leg]
         off, high = over - ground.at(place), math.inf if stands[leg] else scale * _HIGH
         hangs = ground.is_hole(place) or (body.reach.hangs(leg, over) and not stands[leg])
-        # A foot that has lifted the body is as much higher over the ground.
+        # A foot that has lifted the body is less deep than it seems by as much.
         deep |= on and (off + max(-sunk_at(place, body.off), 0.0) <= -most or hangs)
         low.append(on and off < high)
     return [False] * len(low) if deep else low
 
 
 def hovering(state: GaitState, contacts: FootContacts, depths: Sequence[float]) -> list[int]:
-    """Return the legs whose feet have landed above the ground, and have not stood since: their switches stay closed.
+    """Return the legs whose feet have landed above the ground and not stood since, as their switches are stuck closed.
 
     Parameters
     ----------
@@ -244,10 +244,10 @@ def hovering(state: GaitState, contacts: FootContacts, depths: Sequence[float]) 
 
 
 def supporting(state: GaitState, body: BodyMotion, footing: Footing, *, walks: bool) -> list[bool]:
-    """Return which feet that should stand count as support: on rough ground also those that will bear load soon.
+    """Return which feet that should stand count as support: on rough ground, also those that will bear load soon.
 
-    There, a foot that follows others looks for ground that is no deeper than rough ground may be, and finds it while
-    others swing; not where the body sinks at the foot.
+    There, a foot that steps where others have been most often finds the ground while others swing. It does not count
+    where it is deeper than rough ground may be, or where the body sinks at it.
 
     Parameters
     ----------

@@ -55,8 +55,8 @@ _ALONG_TRIED = (NORMALS_CONJUGATE * TRIED[:, None]).real
 class GroundMap:
     """Keeps known heights in place on the ground; their level is tied to the standing feet again with each update.
 
-    So nothing is dead-reckoned for longer than from one reading to the next. Places and heights that are
-    asked for are in the heading frame; where nothing is known, the ground is taken as the plane of the standing feet.
+    So nothing is dead-reckoned for longer than from one reading to the next. Places and heights that are asked for are
+    in the heading frame; where nothing is known, the ground is the plane of the standing feet.
 
     Parameters
     ----------
@@ -197,7 +197,7 @@ class GroundMap:
             if again or (leg not in self.beside and 0 < phase < _CHOOSING):
                 kept = np.abs((NORMALS_CONJUGATE * reach.strokes[leg]).real) / 2
                 slack = footholds.placement_bounds[leg] - kept.clip(_STROKE_SHARE * footholds.placement_radii[leg])
-                # No hole is reported that comes into sight later in a swing: the foot goes down soon.
+                # A hole that is found only later in a swing is not reported: the foot goes down soon.
                 held, end = leg in self.holes or leg not in self.beside, end - self.beside.get(leg, 0j)
                 self.holes.pop(leg, None)
                 allowed = (slack.clip(0.0) >= _ALONG_TRIED).all(axis=1)
