@@ -1,4 +1,4 @@
-"""Body motion over ground that is felt: height, tilt, slope and lost way; looked at less often than in each tick."""
+"""Body motion over felt ground: height, tilt, slope and lost way, all looked at less often than in each tick."""
 
 from __future__ import annotations
 
@@ -27,20 +27,20 @@ from tarsus.robot.robot import Robot
 
 __all__ = ["BodyMotion"]
 
-# How often height, tilt and lost way are looked at [s].
+# Period of the looks at height, tilt and lost way [s].
 _PERIOD = 0.04 - PHASE_TOLERANCE
-# An attitude that has not been measured for longer is not turned towards any more, and then unknown [s].
+# Time without a measured attitude after which the body counts as level, and after which its tilt is unknown [s].
 _HOLDS, _TIMEOUT = 0.15, 2.0
-# Change of the tilt by which the body is turned anew between two looks [rad].
+# Change of the tilt above which the body's rates are decided again between two looks [rad].
 _TURNED = math.radians(0.1)
-# How much lower the next footholds may be than the ground that is felt, over the roughness.
+# How much lower the next footholds may be than the felt ground, over the roughness.
 _LOWER = 0.5
-# More feet hold a robot without one of them.
+# More loaded feet than this hold the robot without any one of them.
 _FEW = 4
 
 
 class BodyMotion:
-    """Decides how the body moves over its standing feet: to its height and attitude, and to where it should be.
+    """Decides how the body moves over its standing feet, to its height and attitude and to where it should be.
 
     Parameters
     ----------
@@ -60,7 +60,7 @@ class BodyMotion:
     heading : HeadingFeedback
         How the body turns back to its heading.
     reach, roughness : Reach, Roughness
-        Between which heights legs reach their strokes; how uneven the ground is.
+        The heights between which legs reach their strokes; how uneven the ground is.
     slope, stance : SlopeLimit, SlopeStance
         Whether the slope is too steep; rest footholds on it.
     stopped : StoppedBody
@@ -70,9 +70,9 @@ class BodyMotion:
     lowered : float
         How much lower loaded feet are commanded than they stand [m].
     since : float
-        Time since height, tilt and lost way were looked at [s].
+        Time since the last look at height, tilt and lost way [s].
     measured, commanded : ValidReadings, list of (coxa, femur, tibia)
-        What is measured in this tick; joint angles of each leg that were commanded in the last one [rad].
+        What is measured in this tick; the joint angles of each leg commanded in the last one [rad].
     """
 
     def __init__(self, robot: Robot, *, levelling: Levelling | None, adaptation: GroundAdaptation) -> None:
@@ -86,10 +86,10 @@ class BodyMotion:
         self.tilt: RollPitch | None = None
         self.measured, self.commanded = ValidReadings(), list[Vector]()
         self.heading, self._sinking = HeadingFeedback(), Sinking(scale)
-        # What the body did when it was looked at, until it is turned by a newer attitude.
+        # What the body did at the last look, until a newer attitude is used.
         self._move: BodyMove | None = None
         self.since, self._unmeasured = _PERIOD, 0.0
-        # Where in G the body was when it was looked at, the heading, and the yaw of the body in it.
+        # Of the last look: place of the body in G, heading, and yaw of the body in the heading frame.
         self._before: tuple[complex, float, float] | None = None
 
     def see(self, attitude: RollPitch | None, state: GaitState, dt: float) -> None:
@@ -99,7 +99,7 @@ class BodyMotion:
         ----------
         attitude : (roll, pitch) or None
             Measured [rad]; None where it is not: the last one holds for a moment, then the body counts as level, as
-            feet that step would turn it on and on.
+            stepping feet would turn it on and on by an old tilt.
         state, dt : GaitState, float
             The gait state; time since the last call [s].
         """
@@ -110,7 +110,7 @@ class BodyMotion:
             self.tilt = (0.0, 0.0) if self._unmeasured <= _TIMEOUT else None
 
     def level(self, attitude: RollPitch | None, state: GaitState) -> None:
-        """Turn by the newest attitude once between two looks: feet that take over load tilt the body sooner.
+        """Turn by the newest attitude once between two looks: feet that take over load tilt the body within that time.
 
         Parameters
         ----------
@@ -169,7 +169,7 @@ class BodyMotion:
         feet, back = [(places[leg], over[leg]) for leg in bears], self.heading.rate
         self.ground.step(feet, self.tilt, state, dt, drift=self.drift, turning=back)
         level = self.ground.plane.levelled(self.tilt)
-        # The way back stays open without an attitude, too.
+        # Without an attitude, the way back from a refused motion stays open, too.
         if self.tilt is not None or self.slope.refused:
             self.slope.step(level, complex(*tick.twist[:2].tolist()), dt, off=math.hypot(*self.off))
         if self.tilt is not None:
@@ -196,7 +196,7 @@ class BodyMotion:
         return complex(*off[leg][:2]) * cmath.exp(1j * yaw) if off else 0j
 
     def sinks_at(self, state: GaitState, footing: Footing, dt: float) -> int | None:
-        """Return the leg of a foot that bears load and sinks, where the heights of all such feet are measured.
+        """Return the leg of a foot that bears load and sinks, where the heights of all such feet are measured; or None.
 
         Parameters
         ----------
@@ -219,12 +219,12 @@ class BodyMotion:
         now = state.origin + heading * at, state.yaw, yaw
         (body, direction, yaw_before), self._before = self._before or now, now
         turned, back = state.yaw - direction, self.heading.rate * dt
-        # The way in the heading frame halfway, and that of a body beside the place about which it turns back.
+        # The way in the heading frame at half of its turn; that of a body beside the point about which it turns back.
         moved = (now[0] - body) / heading * cmath.exp(0.5j * turned) + 1j * back * at
         return CommandedMotion(velocity, moved, turned + back, yaw), (turned + yaw - yaw_before) / dt
 
     def _fit_height(self, state: GaitState, over: list[float], down: list[bool], bears: list[int], dt: float) -> None:
-        """Change the height of the body to one at which all legs reach the ground."""
+        """Change the height of the body towards one at which all legs reach the ground."""
         contacts, reach, plane = self.contacts, self.reach, self.ground.plane
         hanging = [leg for leg, on in enumerate(down) if on and contacts.seeks(leg) and reach.hangs(leg, over[leg])]
         looks_ahead = self.ground.given and all(contacts.stands(leg) for leg, on in enumerate(down) if on)

@@ -34,16 +34,16 @@ if TYPE_CHECKING:
 
 __all__ = ["FeltGround"]
 
-# How far below the expected ground feet go by the end of their swing, over the roughness, and where it is rough [m].
+# How far below the expected ground swings aim, over the roughness; such a depth from which ground is fully rough [m].
 _DEPTH_SHARE, _ROUGH = 0.6, 0.006
-# How soon feet lift off that are not lowered any more [s].
+# Feet that have stood are no longer lowered this long before they lift off [s].
 _LEAVING = 0.1
-# Greatest speed of feet that go down; where contacts are estimated, feet press on the ground before they are known to
-# touch it [m/s].
+# Greatest speed of feet that go down; the same where contacts are estimated, as feet then press on the ground before
+# they are known to touch it [m/s].
 _DESCENT, _ESTIMATED_DESCENT = 0.4, 0.25
-# Of feet that look for the ground while others hold a standing robot: speed, depth below the expected ground [m/s, m].
+# Feet that search while others hold a standing robot: greatest speed [m/s], depth below the expected ground [m].
 _GENTLE, _NEAR = 0.02, 0.004
-# A foot that goes down faster has not come to the end of its reach, which sinks with the body [m/s].
+# Speed above which a foot that goes down is not at the end of its reach, which itself sinks with the body [m/s].
 _FALLS = 0.1
 
 
@@ -57,7 +57,7 @@ class FeltGround:
     angles : array, shape (legs, 3)
         Joint angles in the initial stance [rad].
     body, loads : BodyMotion, FootLoads
-        How the body moves over its standing feet; how these tell of their loads, and yield to them.
+        How the body moves over its standing feet; contacts and loads of the feet, and how they yield.
 
     Attributes
     ----------
@@ -70,7 +70,7 @@ class FeltGround:
     readings : ContinuedReadings
         The readings that were given last.
     offsets : array, shape (legs,), or None
-        Upward offsets of compliant feet [m]; None of stiff ones.
+        Upward offsets of compliant feet [m]; None for stiff ones.
     """
 
     def __init__(
@@ -83,7 +83,7 @@ class FeltGround:
         self.readings, self._loads, self._tipping = ContinuedReadings(robot), loads, Tipping(body.reach.scale)
         self._still, self._swings = True, SwingMonitor()
         self._centre = complex(*centre_of_mass(robot, angles)[:2].tolist())
-        # What feet are given while all is as planned; ticks and times since contacts and support were looked at.
+        # Inputs kept while all is as planned, and what for; ticks and times since contacts and support were looked at.
         self._inputs: FeltInputs | None = None
         self._given: tuple[list[int], bool] = [], True
         self._rests, self._ticks, self._unread, self._idle = True, 0, 0.0, 0.0
@@ -104,7 +104,8 @@ class FeltGround:
         """
         valid = self.body.measured = self.readings.step(readings, angles, dt, lag=self._swings.lag)
         down, self.body.commanded = state.down.tolist(), angles
-        # Without torques, a servo that pushes on as its foot is to get past an obstacle looks like one that has failed.
+        # Without torques, coxae of feet on their way past an obstacle are watched for stops as well: a servo that
+        # pushes on would look like one that has failed.
         lands = [on and not self.missing.obstacles.tries(leg) for leg, on in enumerate(down)]
         stopped = self._swings.step([coxa for coxa, _, _ in angles], valid, dt, down if valid.torques else lands)
         measured = self._loads.contacts(valid, angles, state, dt)
@@ -125,7 +126,7 @@ class FeltGround:
         self.contacts.age = max(valid.contact_age, self._swings.lag - USUAL_LAG)
         self.contacts.estimated = self._loads.estimated
         leaving, rests = timing.due(state, _LEAVING), self._rests and self.support.held
-        # Those of a robot that is carried find no ground: they wait.
+        # Feet of a robot that is carried find no ground: they wait, and do not search.
         lands = [on and not self.condition.carried for on in lands]
         self.contacts.step(measured, down, dt, count=ticks, lands=lands, leaving=leaving, rests=rests)
         self.condition.step([*map(self.contacts.touches, range(len(down)))], valid.attitude, dt, held=self.support.held)
@@ -178,16 +179,16 @@ class FeltGround:
         far = self.body.reach.stroke / max(*footholds.placement_radii, 1e-6)
         travel = travel_share(far, self.contacts.age / timing.swing_time)
         inputs = self._feet_inputs(state, (under, stands, steps), travel)._replace(redundant=timing.redundant)
-        # It stays while all is as planned; yielding feet and a walk that slows down are looked at in each tick.
+        # Inputs stay while all is as planned; with compliant feet or a walk that slows down, each tick has new ones.
         self._inputs = None if self.offsets is not None or self.support.pace < 1.0 else inputs
         return inputs
 
     def _feet_inputs(
         self, state: GaitState, feet: tuple[list[GroundUnder | None], list[bool], list[bool]], travel: float
     ) -> FeltInputs:
-        """Return what the feet are given, which travel in this fraction of their swings."""
+        """Return the inputs of the feet, which travel in this fraction of their swings."""
         body, gently = self.body, self._still and self.support.held and bool(state.down.all())
-        # The body levels about its middle, which its feet pass below.
+        # As the body levels about its middle, the feet below it move horizontally with this velocity.
         passing = complex(-body.rates.turn[1], body.rates.turn[0]) * float(state.posture.value[2])
         scale, depth = body.reach.scale, _DEPTH_SHARE * body.roughness.value
         descent = _ESTIMATED_DESCENT if self._loads.estimated else _DESCENT
@@ -211,7 +212,7 @@ class FeltGround:
         )
 
     def _find_ground(self, state: GaitState, footing: Footing, footholds: FootholdTransfer, dt: float) -> list[bool]:
-        """Decide where feet step that find no ground; return which stand, or would, with the robot in the air."""
+        """Decide where feet that find no ground step; return which feet stand, or count as standing in the air."""
         contacts, missing, deeper = self.contacts, self.missing, self.body.roughness.deeper
         low = not_sunk(state, self.body, footing, tips=bool(missing.tips or missing.places))
         tilt = self.body.measured.attitude and off_commanded(self.body.measured.attitude, state)
@@ -243,7 +244,7 @@ class FeltGround:
         return stands
 
     def _searches(self, state: GaitState, footing: Footing, stands: list[bool]) -> list[Search]:
-        """Return the feet that should stand and feel nothing."""
+        """Return the feet that should stand and feel no ground."""
         contacts, found = self.contacts, list[Search]()
         legs = [leg for leg, on in enumerate(footing.down) if on and not stands[leg] and contacts.is_known(leg)]
         off = self.body.odometry.feet_off_commanded(legs, self.body.measured, self.body.commanded)
@@ -255,7 +256,7 @@ class FeltGround:
         return found
 
     def _under(self, state: GaitState, leg: int, place: complex, *, down: bool) -> GroundUnder:
-        """Return the ground under a foot in the air or without contact, here in the heading frame."""
+        """Return the ground under a foot in the air or without contact, at a place in the heading frame."""
         heading, lifted = cmath.exp(1j * state.yaw), self.contacts.lifted[leg]
         known = not self.condition.in_air and self.contacts.is_known(leg) and (down or lifted)
         stays = self.missing.gives_up(leg) or (down and self.missing.is_raised(-sunk_at(place, self.body.off)))
@@ -269,7 +270,7 @@ class FeltGround:
         return found._replace(bow=heading * reach.bows[leg], bowed=state.elevation + bowed, place=back)
 
     def _decide_on_support(self, footing: Footing, due: list[bool] | None, dt: float, swing_time: float) -> None:
-        """Decide whether feet may lift off, and at which pace the walk goes on; None is due while the robot stands."""
+        """Decide whether feet may lift off, and the pace of the walk; `due` is None while the robot stands."""
         missing, lifts, condition = self.missing, any(due or ()), self.condition
         waits = any((self.body.slope.holds, condition.carried, missing.refuses, missing.tips))
         legs = [leg for leg, on in enumerate(footing.down) if on and not (leg in missing.places or (due and due[leg]))]
