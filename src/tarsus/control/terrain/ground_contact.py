@@ -32,7 +32,7 @@ _HIGHER, _RISING, _DRAWN_BACK, _AT_ONCE = 0.04, 0.12, 0.008, 3.0
 # farther past its collision than the second [m]; speed at which a foot that is stopped again is drawn back [m/s].
 _SHORT, _PAST, _DRAWS_BACK = 0.02, 0.03, 1.0
 # Depth on even ground from which a foot bears no load that is not felt, whatever its shin rests on [m]; greatest such
-# depth on rough ground, over the body height.
+# depth, on rough ground too, over the body height.
 _HANGS, _HANGS_LOW = 0.042, 0.9
 # Height over the expected ground from which a foot without contact bears none either, as before a wall [m].
 _HIGH = 0.03
