@@ -77,8 +77,8 @@ class PostureFeedback:
     Parameters
     ----------
     levelling, scale : "level", "between", "follow" or None, float
-        The attitude to keep, None to make no use of the measured one; factor on the speeds given here, 0 to 1, less
-        than 1 on short legs.
+        The attitude to keep, None to make no use of the measured one; factor by which speeds are reduced on short legs,
+        0 to 1.
 
     Attributes
     ----------

@@ -41,7 +41,7 @@ class SlopeStance:
     Parameters
     ----------
     robot, scale : Robot, float
-        A single robot; factor on the lengths given here, 0 to 1, less than 1 on short legs.
+        A single robot; factor by which lengths are reduced on short legs, 0 to 1.
 
     Attributes
     ----------

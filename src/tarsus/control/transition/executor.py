@@ -39,7 +39,7 @@ class TransitionExecutor:
     initial, foot_targets : StanceTransition, FootTargets
         The stance at the start; the legs that are taken out of the gait.
     scale : float
-        Factor by which lengths are smaller than given, on short legs, 0 to 1.
+        Factor by which lengths are reduced on short legs, 0 to 1.
 
     Attributes
     ----------

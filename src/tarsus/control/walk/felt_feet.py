@@ -114,7 +114,7 @@ class FeltInputs(NamedTuple):
     in_air : bool
         Whether the robot is in the air: all feet go to one height, to be put down together.
     scale : float
-        Factor by which lengths and speeds are smaller than given, on short legs, 0 to 1.
+        Factor by which lengths and speeds are reduced on short legs, 0 to 1.
     redundant : bool
         Whether more than three feet stand at any time of the gait.
     rough, slow_contact : float, float

@@ -128,7 +128,7 @@ def stance_tolerance(state: GaitState, *, scale: float, stands: bool = False) ->
     Parameters
     ----------
     state, scale : GaitState, float
-        The gait state; factor by which lengths are smaller than given, on short legs, 0 to 1.
+        The gait state; factor by which lengths are reduced on short legs, 0 to 1.
     stands : bool
         Whether the foot has been at it before.
     """
