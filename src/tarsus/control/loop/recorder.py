@@ -1,4 +1,4 @@
-"""Notes every tick of a run, and makes a recording of them."""
+"""The recorder of a run: it notes every tick and makes a recording of them."""
 
 from __future__ import annotations
 
@@ -25,17 +25,17 @@ if TYPE_CHECKING:
 
 __all__ = ["Recorder"]
 
-# A limitation that is absent for less than this is still the same one [s].
+# A limitation that comes back within this time counts as the same one [s].
 _GAP = 0.1
 
 
 class Recorder:
-    """Takes in every tick of a run.
+    """Notes every tick of a run.
 
     Parameters
     ----------
     controller : RobotController
-        What is recorded.
+        The controller whose run is recorded.
     """
 
     def __init__(self, controller: RobotController) -> None:
@@ -46,9 +46,9 @@ class Recorder:
         self._twists = [self._command.twist]
         self._measured: list[Any] = []
         self._events: list[Event] = []
-        # Of every limitation that has not been met by the end of its command, by the number of its event.
+        # Commands that were not met by the time they were replaced, by the number of their limitation's event.
         self._unmet: dict[int, Unmet] = {}
-        # Every limitation that is present or was lately, by its key: its event's number, and its last value.
+        # Limitations that are present or were lately, by key: the number of their event, and the last limitation.
         self._present: dict[tuple[str, ...], tuple[int, Limitation]] = {}
 
     @property
@@ -57,13 +57,13 @@ class Recorder:
         return self._times[-1]
 
     def note(self, kind: str, text: str) -> None:
-        """Note an event of a kind at the time of the last tick, with a text: see `Event`."""
+        """Note an event at the time of the last tick; its kind and text are those of `Event`."""
         self._events.append(Event(self.time, self.time, kind, text))
 
     def command(self, command: Command) -> None:
-        """Note the command for the next tick, with everything that holds.
+        """Note the command for the next tick.
 
-        What it replaces has been met by now, or is unmet.
+        Each part of the last command that it replaces is unmet if it is still limited now.
         """
         if command is self._command:
             return
@@ -75,7 +75,7 @@ class Recorder:
 
     @property
     def _limited(self) -> list[tuple[int, Limitation]]:
-        """Limitations of the last two ticks, as some come and go from tick to tick, and the numbers of their events."""
+        """Limitations of the last two ticks, with the numbers of their events: some come and go from tick to tick."""
         lately = self._times[-2:][0]
         return [known for known in self._present.values() if self._events[known[0]].until >= lately]
 
@@ -88,7 +88,7 @@ class Recorder:
         Parameters
         ----------
         time, output, readings : float, ControlOutput, SensorReadings
-            Its end [s]; what the controller gave; what the plant measured before it.
+            End of the tick [s]; what the controller gave out; what the plant measured before that.
         """
         before = self._outputs[-1]
         self._measured.append(readings.joint_angles)
@@ -118,13 +118,13 @@ class Recorder:
         self._present = lately | present
 
     def recording(self, *, name: str, rate: float) -> Recording:
-        """Return the recording of a run of this name, with so many ticks per second [1/s]."""
+        """Return the recording of the run, with its name and its nominal number of ticks per second [1/s]."""
         for number, limitation in self._limited:
             self._note_unmet(number, limitation)
         outputs = self._outputs
         twist = np.array([output.twist for output in outputs])
         guard = tuple(output.guard for output in outputs)
-        # What is measured before a tick belongs to the one before it.
+        # What is measured before an output shows how the angles of the last output were executed.
         measured = [_vectors(angles, self._controller.robot.legs) for angles in (*self._measured, None)]
         return Recording(
             robot=self._controller.robot,
@@ -147,17 +147,17 @@ class Recorder:
         )
 
     def _motion(self, twist: Float[np.ndarray, "n 3"]) -> Motion:
-        """Return what was given out, as a motion."""
+        """Return what the controller gave out, as a motion."""
         outputs, robot, controller = self._outputs, self._controller.robot, self._controller
         angles = np.array([output.angles for output in outputs])
         body = stack_poses([output.body for output in outputs])
         feet = np.array([output.feet for output in outputs])
-        # Where the guard gave out other angles, the feet are where these take them; the body's pose is as commanded.
+        # Where the guard gave out other angles, the feet follow from these, with the body's pose as commanded.
         held = np.array([output.state is RobotState.FAULT for output in outputs])
         feet[held] = (body @ forward_kinematics(robot, angles)[..., 3, :])[held]
         heights: dict[str, Any] = {"body_height": controller.body_height, "swing_height": controller.swing_height}
         setup = WalkSetup.of(robot, outputs[0].gait, **heights)
-        # The speed of each foot at rest against the body.
+        # Speed of each rest foothold relative to the body.
         vx, vy, wz = twist.T[..., None]
         passing = np.hypot(vx - wz * setup.rest[:, 1], vy + wz * setup.rest[:, 0])
         fastest = int(passing.max(1).argmax())
@@ -176,20 +176,20 @@ class Recorder:
             speed=speed,
             body_height=setup.body_height,
             swing_height=setup.swing_height,
-            # Legs that are folded may come nearer to each other than walking ones.
+            # Folded legs may be closer to each other than walking ones.
             foot_distance=0.0 if any(output.belly for output in outputs) else setup.foot_distance,
             assumed=tuple(setup.assumed(**heights)),
         )
 
 
 def _vectors(values: Any, legs: int) -> Float[np.ndarray, "legs 3"]:
-    """Return what is measured of the joints of every leg as numbers; NaN where it is no number."""
+    """Return measured values of the joints by leg, as numbers; NaN where a value is no number."""
     items = as_items(values, (legs, 3)) or [None] * legs
     return np.array([*map(as_vector, items)])
 
 
 def _part(command: Command, kind: LimitationKind) -> Any:
-    """Return the part of a command that limitations of a kind are about, else all of it; None leaves it as it is."""
+    """Return the part of a command that a kind of limitation is about, or else all of it; None if it is left as is."""
     if kind is LimitationKind.FOOT_TARGET:
         return command.foot_targets or command.foot_velocities
     return getattr(command, kind.value, command)

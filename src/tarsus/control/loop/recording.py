@@ -1,4 +1,4 @@
-"""What a run gave: motion, commands, limitations, interventions, and which commands were met."""
+"""The recording of a run: motion, commands, limitations, interventions, and which commands were not met."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ __all__ = ["Event", "Recording", "Unmet"]
 
 @represented()
 class Event(NamedTuple):
-    """Something that happened in a run.
+    """An event of a run.
 
     Attributes
     ----------
@@ -35,8 +35,8 @@ class Event(NamedTuple):
     until : float
         When it ended [s]; the same as `time` where it has no duration.
     kind : str
-        ``"command"``, ``"stage"`` of rising, sitting down or folding, ``"state"``, ``"gait"``, ``"limit"``: a command
-        is not met in full, ``"refused"``, ``"power"``, ``"guard"``: an intervention.
+        ``"command"``, ``"stage"`` (of rising, sitting down or folding), ``"state"``, ``"gait"``, ``"limit"`` (a command
+        is not met in full), ``"refused"``, ``"power"`` or ``"guard"`` (an intervention).
     text : str
         What happened.
     """
@@ -66,36 +66,36 @@ class Unmet(NamedTuple):
     limitation: Limitation
 
     def text(self) -> str:
-        """Return it as a line of text."""
+        """Return the unmet command as a line of text."""
         return f"{self.time:.2f} to {self.until:.2f} s: {self.limitation.text()}"
 
 
 @represented("robot", "name", "rate", "motion", "interventions", "unmet", "events")
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Recording:
-    """A run of a controller and a plant. Arrays have a row for each tick; the first is the robot at the start.
+    """A run of a controller and a plant: arrays have a row for the start and one for each tick.
 
     Attributes
     ----------
     robot : Robot
-        Which robot.
+        The robot.
     name : str
-        What the run is called.
+        Name of the run.
     rate : float
         Nominal ticks per second [1/s].
     compliant : bool
         Whether feet comply with forces.
     motion : Motion
-        All of the motion; while the robot lies on its belly, margins mean nothing. The gait, the cycle time, the
-        stroke and the speed are those of its fastest walking; `body_height` and `swing_height` those at the start.
+        The whole motion; its stability margins are meaningless while the robot lies on its belly. Gait, cycle time,
+        stroke and speed are those of the fastest walking, `body_height` and `swing_height` those at the start.
     twist_commanded, twist : array, shape (n, 3)
-        Twist that was commanded, and that was walked: forward, left [m/s], turning [rad/s].
+        Commanded twist, and the twist walked: forward, left [m/s], turning [rad/s].
     cycle_times : array, shape (n,)
         Duration of a cycle [s].
     belly : array of bool, shape (n,)
         Whether the body rests on the ground.
     measured_angles : array, shape (n, legs, 3)
-        Joint angles as measured by the plant; NaN where they are not [rad].
+        Joint angles measured by the plant; NaN where none were measured [rad].
     states : tuple of str
         State of the robot.
     activities : tuple of str
@@ -109,7 +109,7 @@ class Recording:
     unmet : tuple of Unmet
         Commands that were not met in full.
     events : tuple of Event
-        In the order of their times.
+        What happened, in order of time.
     """
 
     robot: Robot
@@ -143,14 +143,14 @@ class Recording:
     def standing(self) -> tuple[Motion, ...]:
         """The intervals in which the body is off the ground, each as a motion of its own that starts at 0 s.
 
-        Margins and loads mean something for these.
+        Stability margins and loads are meaningful only for these.
         """
         edges = np.flatnonzero(np.diff(np.concatenate([[True], self.belly, [True]]).astype(int)))
         return tuple(self._part(int(first), int(end)) for first, end in edges.reshape(-1, 2) if end - first > 1)
 
     @property
     def longest_standing(self) -> Motion | None:
-        """The longest of `standing`; None where it has fewer samples than loads need."""
+        """The longest motion of `standing`; None where it has too few samples to compute loads."""
         longest = max(self.standing, key=lambda part: part.duration, default=None)
         return longest if longest is not None and len(longest.time) > 2 else None
 
@@ -163,7 +163,7 @@ class Recording:
 
     @property
     def command_problems(self) -> tuple[str, ...]:
-        """Refused and unmet commands, and interventions of the guard, a line for each."""
+        """Refused and unmet commands, and kinds of interventions of the guard, a line for each."""
         refused = [f"at {event.time:.2f} s {event.text}" for event in self.events if event.kind == "refused"]
         unmet = [f"not met in full, {each.text()}" for each in self.unmet]
         stopped = [f"guard: {number} x {kind}" for kind, number in self.interventions.items()]
@@ -181,7 +181,7 @@ class Recording:
         return not self.problems
 
     def to_csv(self, path: str | os.PathLike[str]) -> None:
-        """Write the log as a table: a row for each tick, in mm/s and deg/s. The angles are in `motion`'s table.
+        """Write the run as a table with a row for each tick, in mm/s and deg/s; `motion` has a table of the angles.
 
         Parameters
         ----------
@@ -191,7 +191,7 @@ class Recording:
         Raises
         ------
         InputError
-            If it can't be written.
+            If the file can't be written.
         """
         scale = np.array([1e3, 1e3, 180 / np.pi])
         twists = [self.motion.time[:, None], self.twist_commanded * scale, self.twist * scale]

@@ -1,4 +1,4 @@
-"""The one loop: a source of commands, a controller, and a plant."""
+"""The control loop that runs a source of commands, a controller and a plant."""
 
 from __future__ import annotations
 
@@ -22,23 +22,23 @@ __all__ = ["CommandSource", "TimedCommands", "run"]
 Asked: TypeAlias = Command | tuple[float, float, float]
 """A command, or a twist alone."""
 
-# Two times this near to each other are the same [s].
+# Times that differ by no more than this are the same [s].
 _SAME_TIME = 1e-9
-# How long a run without a duration continues after the last command [s], and how long what that command began may take.
+# How long a run without a duration continues after its last command: at least, and at most, if not at rest before [s].
 AFTER, LONGEST = 2.0, 120.0
 
 
 @runtime_checkable
 class CommandSource(Protocol):
-    """What gives the commands of a run: a scenario, a gamepad, a list."""
+    """A source of the commands of a run: a scenario, a gamepad, a list."""
 
     def command(self, time: float, output: ControlOutput, note: Callable[[str, str], None]) -> Command:
-        """Return the command for the next tick, with everything that holds.
+        """Return the command that holds for the next tick.
 
         Parameters
         ----------
         time, output : float, ControlOutput
-            The time at the end of the last tick [s]; what the controller gave last.
+            Time at the end of the last tick [s]; the controller's last output.
         note : callable
             Takes the kind and the text of an event to be recorded.
         """
@@ -48,15 +48,15 @@ class CommandSource(Protocol):
 
 
 class TimedCommands:
-    """Commands, each from its time on until the next.
+    """Commands that each hold from their time until that of the next.
 
     Parameters
     ----------
     commands : iterable of (float, Command or (vx, vy, wz))
         Times [s] and commands.
     duration : float, optional
-        How long the run takes [s]; left out, until 2 s after the last command and until the robot is at rest, or its
-        twist is not 0.
+        How long the run takes [s]; left out, it ends 2 s after the last command or, if that has no twist, once the
+        robot is at rest after that; 120 s after the last command at the latest.
     """
 
     def __init__(self, commands: Iterable[tuple[float, Asked]], *, duration: float | None = None) -> None:
@@ -96,27 +96,27 @@ def run(
 ) -> Recording:
     """Run a controller and a plant through commands, and record every tick.
 
-    In each tick the plant executes the angles of the last one and measures, and the controller takes what was
-    measured and gives the next angles. Whatever ends the run, the plant is stopped.
+    In each tick the plant executes the angles of the last tick and measures, and the controller takes these readings
+    and gives the next angles. Whatever ends the run, the plant is stopped.
 
     Parameters
     ----------
     controller, plant : RobotController, Plant
-        The controller; executes the joint angles: an ideal, simulated or real robot of the same kind.
+        The controller; the plant that executes its joint angles: an ideal, simulated or real robot of the same kind.
     commands : CommandSource or iterable of (float, Command or (vx, vy, wz))
-        Times [s] and what is commanded from then on; or what gives a command for every tick.
+        Times [s] and what is commanded from then on; or a source that gives a command for every tick.
     duration : float, optional
-        How long the run takes [s]; for a list of commands, left out: until 2 s after the last one, and until the robot
-        is at rest where the twist is 0.
+        How long the run takes [s], for a list of commands; a `CommandSource` ends the run itself. Left out, see
+        `TimedCommands`.
     rate, jitter : float, float
-        Ticks per second [1/s]; by how much a tick may be longer or shorter, at random [s].
+        Ticks per second [1/s]; greatest random change of the length of a tick [s].
     seed, name : int, str
-        Seed of what is random; what the run is called.
+        Seed of the random changes; name of the run.
 
     Raises
     ------
     InputError
-        If the plant is another robot, or a number is not finite or out of its range.
+        If the plant has another robot, or a number is not finite or out of its range.
     """
     require_same_robot(plant.robot, controller.robot, "controller")
     rate = require_number("rate", rate, zero=False)
