@@ -1,4 +1,4 @@
-"""What a robot controller does at a time: walk, play a motion sequence, or rest on the belly."""
+"""Activities of a robot controller, one at a time: walking, playing a motion sequence, resting on the belly."""
 
 from __future__ import annotations
 
@@ -28,12 +28,12 @@ if TYPE_CHECKING:
 
 __all__ = ["Activity", "Braking", "Playing", "Resting", "Walking", "way_back"]
 
-# Fraction of the joints' acceleration with which they lose the speed that they have.
+# Fraction of the greatest joint acceleration with which joints brake.
 _SHARE = 0.8
 
 
 class Walking:
-    """Standing and walking, by a walk controller.
+    """Standing and walking, with the angles of a walk controller.
 
     Parameters
     ----------
@@ -43,13 +43,13 @@ class Walking:
     Attributes
     ----------
     measured : ValidReadings
-        The readings of the last tick.
+        The part of the readings of the last tick that passed validation.
     """
 
     def __init__(self, controller: WalkController) -> None:
         self.controller, self.measured = controller, ValidReadings()
         self._validator = ReadingsValidator(controller.robot)
-        # What is rejected of readings that the controller does not get: of the others, it tells itself.
+        # Rejections of readings that the controller does not get; it reports those of the others itself.
         self._rejected: list[Limitation] = []
 
     def step(self, command: Command, dt: float, readings: SensorReadings | None) -> None:
@@ -60,12 +60,12 @@ class Walking:
         self._rejected = rejections(self.measured) if felt is None else []
 
     def joints_held(self) -> None:
-        """Take note that the joints have been held where they are: they go on from rest."""
+        """Note that the joints have been held in place: they continue from rest."""
         self.controller.joints_held()
 
     @property
     def gait(self) -> Gait:
-        """The order of the steps of all legs."""
+        """Order of the steps of all legs."""
         return self.controller.gait
 
     @property
@@ -80,7 +80,7 @@ class Walking:
 
     @property
     def snapshot(self) -> Snapshot:
-        """The robot now."""
+        """The present state of the robot."""
         walk = self.controller
         vx, vy, wz = walk.twist.tolist()
         return Snapshot(
@@ -98,7 +98,7 @@ class Walking:
 
 
 class Braking:
-    """Joints that lose the speed that they have at constant deceleration, before their limits.
+    """Joints that brake from their present speeds at constant deceleration, and stop within their limits.
 
     Parameters
     ----------
@@ -107,7 +107,7 @@ class Braking:
     angles, speeds : array, shape (legs, 3)
         Joint angles [rad] and speeds [rad/s] at the start.
     acceleration : array
-        Greatest accelerations of the joints, of which the least counts [rad/s^2].
+        Greatest accelerations of the joints; all brake with a share of the least, harder only near a limit [rad/s^2].
 
     Attributes
     ----------
@@ -132,18 +132,18 @@ class Braking:
 
 
 class Playing:
-    """Rising, sitting down or folding, by a planned motion sequence; can return to its start.
+    """Rising, sitting down or folding, by playing a planned motion sequence, forward or back to its start.
 
     Parameters
     ----------
     sequence, state : MotionSequence, RobotState
-        What is played; what the robot does meanwhile.
+        The sequence; the state of the robot while it is played.
     before, base : Activity, Pose or None
-        What it did before, and does again where the sequence is played back to its start; the pose of that activity's
-        ground frame.
+        The activity before, which continues once the sequence has been played back to its start; the pose of that
+        activity's ground frame.
     braking : Braking or None
-        How the joints come to rest at the start of the sequence where it begins in the middle of a motion. It does not
-        return there.
+        How the joints come to rest before the sequence where it is begun during a motion. Such a sequence is not played
+        back.
     """
 
     def __init__(
@@ -166,8 +166,8 @@ class Playing:
         (self._player.reverse if back else self._player.resume)()
 
     def leads_to(self, goal: RobotState) -> bool:
-        """Return whether the end of the sequence is on the way to a state that is wanted."""
-        # There is no way back into the middle of a motion.
+        """Return whether the sequence is to be played to its end for a wanted state."""
+        # A sequence begun during a motion can't return into that motion.
         return self.braking is not None or self.end is goal or (self.end, goal) == (RobotState.LYING, RobotState.FOLDED)
 
     @property
@@ -183,20 +183,20 @@ class Playing:
             self._time += dt
 
     def joints_held(self) -> None:
-        """Take note that the joints have been held where they are: they go on from rest."""
+        """Note that the joints have been held in place: they continue from rest."""
         self._player.joints_held()
 
     @property
     def _brakes(self) -> Braking | None:
-        """How the joints brake now; None once they are at rest."""
+        """How the joints brake before the sequence; None once they are at rest."""
         return self.braking if self.braking is not None and self._time < self.braking.duration else None
 
     @property
     def snapshot(self) -> Snapshot:
-        """The robot now."""
+        """The present state of the robot."""
         now, braking = self._player.now, self._brakes
         angles = now.angles if braking is None else braking.at(self._time)
-        # The feet slide as the joints brake.
+        # The feet slide while the joints brake.
         felt = self._felt or braking is not None
         return Snapshot(angles, now.body, None, now.contacts, now.belly, self.state, now.stage, felt=felt)
 
@@ -207,16 +207,16 @@ class Resting:
     Parameters
     ----------
     sample, state : SequenceSample, RobotState
-        How the robot lies; lying or folded.
+        Pose of the robot; LYING or FOLDED.
     after : Playing, optional
-        The sequence that has brought it there.
+        The sequence that has brought the robot there.
 
     Attributes
     ----------
     snapshot : Snapshot
-        The robot, which does not move.
+        The state of the robot, which does not move.
     after : Playing or None
-        The sequence that has brought it there.
+        The sequence that has brought the robot there; None if it started there.
     """
 
     def __init__(self, sample: SequenceSample, state: RobotState, *, after: Playing | None = None) -> None:
@@ -227,7 +227,7 @@ class Resting:
 
     @classmethod
     def after_sitting(cls, robot: Robot, stance: Float[np.ndarray, "legs 3"], state: RobotState) -> Self:
-        """Return how a robot lies that has sat down from a stance, and folded its legs where that is the state.
+        """Return the activity of a robot that has sat down from a stance and, for the state FOLDED, folded its legs.
 
         Parameters
         ----------
@@ -236,7 +236,7 @@ class Resting:
         stance : array, shape (legs, 3)
             Joint angles of the stance [rad].
         state : RobotState
-            Lying or folded.
+            LYING or FOLDED.
         """
         sequence = sit_down(robot, stance)
         if state is RobotState.FOLDED:
@@ -245,7 +245,7 @@ class Resting:
 
     @classmethod
     def measured(cls, robot: Robot, angles: Any) -> Self:
-        """Return how a robot lies with measured joint angles.
+        """Return the activity of a robot that lies with measured joint angles.
 
         Parameters
         ----------
@@ -267,22 +267,22 @@ class Resting:
         return cls(sample, RobotState.LYING)
 
     def step(self, command: Command, dt: float, readings: SensorReadings | None) -> None:
-        """Do nothing."""
+        """Do nothing: the robot does not move."""
 
 
 Activity: TypeAlias = Walking | Playing | Resting
-"""What moves all joints, tick by tick."""
+"""What moves all joints, tick by tick; a robot controller has one activity at a time."""
 
 
 def way_back(activity: Activity, change: RobotState) -> Activity:
-    """Return what takes the place of a change that can't be planned: the same activity where there is no such way.
+    """Return the activity to go on with where a change of state can't be planned; the same one if there is no other.
 
-    A robot that has sat down from a stance stands up by playing that back: the feet are where they stood.
+    A robot that has sat down from a stance stands up by playing that sequence back: its feet are where they stood.
 
     Parameters
     ----------
     activity, change : Activity, RobotState
-        What the robot does; the change, like rising.
+        The present activity; the change, such as RISING.
     """
     down = activity.after if isinstance(activity, Resting) and change is RobotState.RISING else None
     if down is None or down.braking is not None or type(down.before) is not Walking:

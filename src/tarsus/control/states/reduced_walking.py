@@ -1,4 +1,4 @@
-"""Walking without legs that have failed: the robot that is left, its gait, and the way to its stance."""
+"""Walking without failed legs: the robot with the remaining legs, its gait, and the motion to its stance."""
 
 from __future__ import annotations
 
@@ -35,14 +35,14 @@ _T = TypeVar("_T")
 
 _SITS = "the robot sits down: it can't walk without"
 _CAUSE = "the joint has failed: the robot walks on without this leg"
-# A leg that has failed is held up at this angle of its femur, with its tibia this far from its limit [rad].
+# Pose in which a failed leg is held up: angle of the femur, and distance of the tibia from its lower limit [rad].
 _FEMUR_UP, _FROM_LIMIT = 1.0, 0.1
-# Fraction of the joints' speed with which the legs move to their new stance, and the least time [s].
+# Motion of the legs to their new stance: fraction of the greatest joint speed that it uses, and its least time [s].
 _SPEED_SHARE, _LEAST_TIME = 0.15, 1.0
 
 
 class ReducedWalking(Walking):
-    """Standing and walking on the legs that are left, turned towards the place of those that are not.
+    """Standing and walking on the remaining legs, which are turned towards the places of the failed ones.
 
     The gait is ripple or wave, whichever is faster; where neither keeps the robot stable, one leg is in the air at a
     time, with a body shift.
@@ -52,21 +52,21 @@ class ReducedWalking(Walking):
     robot : Robot
         The robot with all of its legs.
     failed, now : mapping of int to int, Snapshot
-        Legs that have failed, and the joint; the robot now.
+        Failed legs, with the failed joint of each; the present state of the robot.
     speeds : array, shape (legs, 3)
-        Joint speeds now [rad/s].
+        Present joint speeds [rad/s].
     options
         As for `WalkController`.
 
     Attributes
     ----------
     failed : dict of int to int
-        Legs that have failed, and the joint.
+        Failed legs, with the failed joint of each.
 
     Raises
     ------
     TarsusError
-        If fewer than four legs are left, or those do not hold the robot.
+        If fewer than four legs are left, or these can't support the robot.
     """
 
     def __init__(
@@ -81,7 +81,7 @@ class ReducedWalking(Walking):
         self._robot, self._legs = robot, [leg for leg in range(robot.legs) if leg not in failed]
         rest = remaining_robot(robot, self._legs)
         super().__init__(_fastest_walk(rest, **options))
-        # Joint angles at which those of the robot that is left are 0.
+        # Joint angles of the remaining legs where those of the walk controller, with its turned legs, are 0 [rad].
         self._zero = np.zeros((len(self._legs), 3))
         self._zero[:, 0] = np.asarray(self.controller.robot.mount_yaw) - np.asarray(rest.mount_yaw)
         offsets = np.zeros(robot.legs)
@@ -102,7 +102,7 @@ class ReducedWalking(Walking):
         self._time = 0.0
 
     def step(self, command: Command, dt: float, readings: SensorReadings | None) -> None:
-        """Advance by one tick; until the legs are in their new stance, nothing is followed."""
+        """Advance by one tick; until the legs are in their new stance, commands and readings are ignored."""
         if self._time < self._duration:
             self._time += dt
             return
@@ -118,17 +118,17 @@ class ReducedWalking(Walking):
 
     @property
     def gait(self) -> Gait:
-        """The order of the steps of the legs that are left; the others count as if they stepped with offset 0."""
+        """Order of the steps of the remaining legs; the failed ones are given the offset 0."""
         return self._gait
 
     @property
     def stands(self) -> bool:
-        """Whether the robot stands, every foot that is left on the ground and no step under way."""
+        """Whether the robot stands, every remaining foot on the ground and no step under way."""
         return self._time >= self._duration and super().stands
 
     @property
     def snapshot(self) -> Snapshot:
-        """The robot now."""
+        """The present state of the robot."""
         now = super().snapshot
         share, contacts = min(self._time / self._duration, 1.0), np.zeros(self._robot.legs, dtype=bool)
         start = self._braking.at(self._time)
@@ -141,17 +141,17 @@ class ReducedWalking(Walking):
             feet=None,
             contacts=contacts,
             limitations=(*self._limitations, *now.limitations),
-            # The feet slide to their new stance.
+            # The feet slide on the way to their new stance.
             felt=now.felt or share < 1,
         )
 
     def _of_all(self, measured: tuple[_T | None, ...] | None) -> tuple[_T | None, ...] | None:
-        """Return what is measured of the legs that are left, as of all legs."""
+        """Return the values of the remaining legs as values of all legs, None for the failed ones."""
         found = dict(zip(self._legs, measured or (), strict=False))
         return None if measured is None else tuple(found.get(leg) for leg in range(self._robot.legs))
 
     def _of_legs(self, readings: SensorReadings) -> SensorReadings:
-        """Return the readings of the legs that are left."""
+        """Return the readings of the remaining legs, with coxa angles as the walk controller counts them."""
         values = self._left({name: getattr(readings, name) for name in CHANNELS})
         if "joint_angles" in values:
             values["joint_angles"] = _turned(map(as_vector, values["joint_angles"]), -self._zero[:, 0])
@@ -159,20 +159,20 @@ class ReducedWalking(Walking):
         return dataclasses.replace(readings, **values, age=ages)
 
     def _left(self, values: dict[str, Any]) -> dict[str, Any]:
-        """Return the items of the legs that are left, of those values that have one for each leg."""
+        """Return the items of the remaining legs, from those values that have an item for each leg."""
         legs = self._robot.legs
         items = {name: as_items(value, (legs, 3), (legs,)) for name, value in values.items()}
         return {name: [each[leg] for leg in self._legs] for name, each in items.items() if each is not None}
 
 
 def _turned(legs: Iterable[Vector | None], coxae: Float[np.ndarray, "legs"]) -> tuple[Vector | None, ...]:
-    """Return joint angles with the coxae turned further; None for legs of which nothing is known."""
+    """Return joint angles with an angle added to that of each coxa; None for legs without a measurement."""
     pairs = zip(legs, coxae.tolist(), strict=True)
     return tuple(angles and (angles[0] + coxa, *angles[1:]) for angles, coxa in pairs)
 
 
 def _fastest_walk(robot: Robot, **options: Any) -> WalkController:
-    """Return the faster of ripple and wave, each in the stance that supports it best, else a walk with a body shift."""
+    """Return a walk in the faster of ripple and wave, each in its best-supported stance, or else with a body shift."""
     heights = {name: options.get(name) for name in ("body_height", "swing_height")}
 
     def walk(gait: Gait) -> WalkController:
@@ -189,7 +189,7 @@ def _fastest_walk(robot: Robot, **options: Any) -> WalkController:
 
 
 class LegFailures:
-    """Legs that have failed, found by their measured joint angles or told; a robot that can't walk without them sits.
+    """Failed legs, found by measured joint angles or set from outside; a robot that can't walk without them sits down.
 
     Parameters
     ----------
@@ -201,8 +201,8 @@ class LegFailures:
     Attributes
     ----------
     failed : FailedJoints
-        Legs that have failed, and the joint; to be changed by who knows better. A leg that is removed from it is used
-        again once the robot has lain. Legs and joints that the robot does not have are refused.
+        Failed legs, with the failed joint of each; callers that know better may change it. A leg that is removed is
+        used again once the robot has lain down and risen. Legs and joints that the robot does not have are refused.
     """
 
     def __init__(self, robot: Robot, **options: Any) -> None:
@@ -212,14 +212,14 @@ class LegFailures:
         self._not_walkable, self._cause = dict[int, int](), ""
 
     def following(self, activity: Walking, now: Snapshot, dt: float) -> Walking:
-        """Return the activity that follows after a tick: another one where another leg has failed.
+        """Return the activity that follows a tick: a new one, without the failed legs, where another leg has failed.
 
         Parameters
         ----------
         activity : Walking
-            The present one.
+            The present activity.
         now, dt : Snapshot, float
-            The robot before the tick; length of the tick [s].
+            State of the robot before the tick; length of the tick [s].
         """
         self._monitor.step(now.angles, activity.measured, dt)
         lost = activity.failed if isinstance(activity, ReducedWalking) else {}
@@ -234,7 +234,7 @@ class LegFailures:
 
     @property
     def sits(self) -> bool:
-        """Whether the robot has to sit down."""
+        """Whether the robot has to sit down, as it can't walk without the failed legs."""
         return bool(self._not_walkable) and self._not_walkable.keys() <= self.failed.keys()
 
     @property
