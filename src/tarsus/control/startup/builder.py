@@ -1,4 +1,4 @@
-"""Builder of motion sequences: the current state of the robot, and one checked stage after the other."""
+"""Builder of motion sequences: the current state of the robot, and the checked stages that led to it."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ __all__ = ["GROUND_TOLERANCE", "BodyTarget", "SequenceBuilder", "body_contacts"]
 GROUND_TOLERANCE = 1e-7
 """Height below which a point counts as on the ground [m]."""
 
-# Stages in which no joint moves by more are omitted [rad].
+# Stages in which no joint moves by more than this are omitted [rad].
 _MIN_MOTION = 1e-12
 
 
@@ -54,8 +54,8 @@ class BodyTarget(NamedTuple):
 class SequenceBuilder:
     """Current state of the robot, and the stages that led to it.
 
-    The methods that move the robot return it with the checked stages added. They raise a `TarsusError` if a motion is
-    impossible.
+    The methods that move the robot return a builder with the new state and with the checked stages added. They raise a
+    `TarsusError` if a motion is impossible.
 
     Attributes
     ----------
@@ -97,7 +97,7 @@ class SequenceBuilder:
 
     @property
     def points(self) -> Float[np.ndarray, "legs 4 3"]:
-        """Points of the legs in G, as of `forward_kinematics`: shape (legs, 4, 3) [m]."""
+        """Points of the legs in G, in the order of `forward_kinematics`: shape (legs, 4, 3) [m]."""
         return np.asarray(self.body @ forward_kinematics(self.robot, self.angles))
 
     @property
@@ -111,7 +111,7 @@ class SequenceBuilder:
         return float(self.body.position[2])
 
     def stage(self, name: str, **changes: Any) -> Stage:
-        """Return a stage of this name, of one second, in which nothing moves but for changes; it is not checked."""
+        """Return an unchecked stage of one second in which nothing moves, with changes to its attributes."""
         feet = self.feet
         still = Stage(
             name=name,
@@ -141,7 +141,7 @@ class SequenceBuilder:
         name : str
             Name of the stages.
         angles : array, shape (legs, 3)
-            Joint angles at the end; legs that have them already stay where they are [rad].
+            Joint angles at the end; legs that have these already stay in place [rad].
         landed, margin : bool, float
             Whether the feet that move are on the ground at the end; least stability margin [m].
         """
@@ -158,7 +158,7 @@ class SequenceBuilder:
         return builder
 
     def _path(self, name: str, leg: int, end: Float[np.ndarray, "3"]) -> Path:
-        """Return a path of a leg through the air from its joint angles to others."""
+        """Return a path of a leg through the air from its present joint angles to others."""
         start = self.angles[leg]
         path = LegFreeSpace.of(self.robot, leg, self.body).find_path(start, end)
         if path is None:
@@ -190,7 +190,7 @@ class SequenceBuilder:
         return self._add(name, margin=margin, contacts=stance, contacts_end=stance | legs, **changes)
 
     def move_body(self, name: str, target: BodyTarget, stationary: Bool[np.ndarray, "legs"]) -> Self:
-        """Move the body over stationary feet, supported by its underside as well where it comes to lie on the ground.
+        """Move the body over stationary feet; where it is to lie, its points on the ground support it as well.
 
         Parameters
         ----------
@@ -204,17 +204,17 @@ class SequenceBuilder:
         return builder._add(name, end=target.body, pivot=target.pivot, cartesian=stationary)
 
     def unload(self, leg: int) -> Self:
-        """Return the robot with a leg that bears no load, neither on its foot nor on its knee or femur axis."""
+        """Return the robot with a leg that bears no load any more: not on its foot, its knee or its femur axis."""
         others = (np.abs(self.supports[:, None] - self.points[leg, 1:3]) > GROUND_TOLERANCE).any(-1).all(-1)
         contacts = self.contacts & (np.arange(self.robot.legs) != leg)
         return replace(self, supports=self.supports[others], contacts=contacts)
 
     def lie_down(self) -> Self:
-        """Return the robot with its body lying on the ground where it is."""
+        """Return the robot with its body lying on the ground in its present pose."""
         return replace(self, belly=True, supports=body_contacts(self.robot, self.body))
 
     def end_at(self, angles: Float[np.ndarray, "legs 3"]) -> Self:
-        """Return the robot with final joint angles that are equal to the present ones up to rounding [rad]."""
+        """Return the robot with its joint angles replaced by given ones, equal to them up to rounding [rad]."""
         angles = read_only(np.array(angles))
         last = [replace(stage, angles_end=angles) for stage in self.stages[-1:]]
         return replace(self, angles=angles, stages=(*self.stages[:-1], *last))
@@ -225,7 +225,7 @@ class SequenceBuilder:
         Parameters
         ----------
         robot : Robot
-            The robot that moves; the builder's differs from it in the thickness of its body.
+            The robot that moves; that of the builder may have a thinner body: see `over_feet`.
         """
         stages = self.stages or (self.stage("hold", duration=0.0),)
         home = ground_frame(self.body).inverse()

@@ -1,4 +1,4 @@
-"""Checks of a stage: reach, joint limits, ground clearance, lift-off and stability margin."""
+"""Checks of a stage of a motion sequence: reach, joint limits, ground clearance, lift-off and stability margin."""
 
 from __future__ import annotations
 
@@ -21,11 +21,11 @@ if TYPE_CHECKING:
 
 __all__ = ["check_stage", "limit_excess"]
 
-# Tolerances of an angle beyond its limit [rad], of a depth below the ground, and of the stability margin [m].
+# Tolerances of an increase of an angle beyond its limit [rad], of a depth below the ground and of the margin [m].
 _ANGLE_TOLERANCE = 1e-8
 _DEPTH_TOLERANCE = 1e-6
 _MARGIN_TOLERANCE = 1e-9
-# Tolerance of an angle that inverse kinematics reproduces [rad].
+# Tolerance with which inverse kinematics has to reproduce the initial angles [rad].
 _BRANCH_TOLERANCE = 1e-6
 # The stability margin is evaluated at every n-th point of `GRID`.
 _MARGIN_INTERVAL = 4
@@ -75,7 +75,7 @@ def check_stage(stage: Stage, margin: float) -> None:
 def _check_reach(stage: Stage) -> None:
     """Refuse a stage in which a foot cannot follow its Cartesian path."""
     fails = np.isnan(stage.table).any(-1)
-    # At the ends of the range of angles, a leg can start with another solution than that of its branch.
+    # Near the ends of the range of angles, the solution of a leg's branch may differ from the angles it starts with.
     fails[0] |= np.abs(stage.table[0] - stage.angles).max(-1) > _BRANCH_TOLERANCE
     if not fails.any():
         return

@@ -29,20 +29,20 @@ __all__ = ["lying_state", "measured_state", "over_feet", "resting_state", "uneve
 
 # Default joint speed of motion sequences, as a share of the servo's no-load speed.
 _SERVO_SPEED_SHARE = 0.5
-# With a greater tilt, the robot has fallen over.
+# Greatest tilt of the body; with a greater one, the robot counts as fallen over [rad].
 _MAX_TILT = math.radians(60)
 # Tilt below which the body counts as level [rad].
 _LEVEL_TOLERANCE = 1e-7
-# Least thickness of a body as seen from the plane of the feet [m].
+# Least thickness of a body in `over_feet` [m].
 _THINNEST = 1e-3
 
 
 def over_feet(robot: Robot) -> Robot:
-    """Return the robot as seen from the plane of its feet: with points as feet, and a body that is thinner by as much.
+    """Return the robot with a thinner body, for plans in which the feet are points and their plane is the ground.
 
-    Foot balls of radius `r` on the ground have their centres `r` above it: while they stand, the ground is `r` nearer
-    to the underside of the body than the plane of the feet is. Feet of different radii count with the least one. The
-    thickness of a body without a box is not known, and stays.
+    The feet of a plan are the centres of the foot balls, which stand one radius `r` above the ground. To keep the true
+    clearance of the body, its underside is raised by `r`: its box, centred on B's origin, becomes thinner by ``2 r``.
+    Of different radii, the least one counts. A body without a box has no known thickness, and is not changed.
 
     Parameters
     ----------
@@ -65,7 +65,7 @@ def measured_state(
     swing_height: float | None = None,
     margin: float = 0.0,
 ) -> SequenceBuilder:
-    """Return a builder with a robot of which only the joint angles are known yet, as seen from the plane of its feet.
+    """Return a builder for the robot of `over_feet`, of which only the joint angles are known yet.
 
     Its body is at the origin of G, and nothing bears load.
 
@@ -79,7 +79,7 @@ def measured_state(
         Greatest joint speed [rad/s] and acceleration [rad/s^2] of the plan; by default half the servo's no-load speed,
         reached within 0.05 s.
     swing_height, margin : float, float
-        Of the builder [m]; the robot's own swing height where left out.
+        Swing height and least stability margin of the builder [m]; by default the robot's own swing height.
 
     Raises
     ------
@@ -104,12 +104,12 @@ def measured_state(
 
 
 def resting_state(state: SequenceBuilder) -> SequenceBuilder:
-    """Return a builder with the robot at rest in its measured joint angles.
+    """Return a builder with the robot at rest on flat ground with its measured joint angles.
 
     Parameters
     ----------
     state : SequenceBuilder
-        As of `measured_state`.
+        From `measured_state`.
 
     Raises
     ------
@@ -136,12 +136,12 @@ def resting_state(state: SequenceBuilder) -> SequenceBuilder:
 def uneven_state(state: SequenceBuilder, loaded: Bool[np.ndarray, "legs"]) -> SequenceBuilder:
     """Return a builder with the robot standing on feet that are known to bear load, on ground of any height.
 
-    The plane of these feet is level, and the lowest of all feet on the ground.
+    The plane fitted to these feet is taken to be level, and the lowest of all feet to be on the ground.
 
     Parameters
     ----------
     state : SequenceBuilder
-        As of `measured_state`.
+        From `measured_state`.
     loaded : array of bool, shape (legs,)
         Which feet bear load, at least three.
     """
@@ -160,7 +160,7 @@ def lying_state(state: SequenceBuilder, *, purpose: str) -> SequenceBuilder:
     Parameters
     ----------
     state, purpose : SequenceBuilder, str
-        As of `measured_state`; what requires the robot to lie, for the error message.
+        From `measured_state`; what requires the robot to lie, for the error message.
 
     Raises
     ------

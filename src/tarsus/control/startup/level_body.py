@@ -29,18 +29,19 @@ __all__ = ["body_targets", "level_body"]
 
 # Number of body heights to try between lying and standing.
 _HEIGHTS = 6
-# How far the body may rise above its initial and its final height to make room for its legs [m].
+# How far the body may rise above its initial and its final height to make room for its legs; half of this is how far
+# the lowest height tried is above lying [m].
 _EXTRA_HEIGHT = 0.04
 # Tolerance of an angle beyond its limit [rad].
 _ANGLE_TOLERANCE = 1e-7
-# Feet below this height over the ground are kept at their place, as joint backlash can explain their height [m].
+# Feet in the air below this height stay in place as the body lies down: joint backlash can explain such a height [m].
 _NEAR_GROUND = 0.005
 # Number of body poses on the path to the target at which a foothold must be within reach.
 _POSES = 9
-# Candidate footholds: distances as fractions of the leg length, and coxa angles [rad].
+# Candidate footholds: distances from the coxa axis as fractions of the leg length, and coxa angles [rad].
 _DISTANCES = np.linspace(0.3, 0.95, 14)
 _COXA_ANGLES = np.deg2rad(np.linspace(-45, 45, 13))
-# Number of reachable footholds to try for each leg, spread over near and far ones.
+# Number of reachable footholds to try for each leg, spread over those near to and far from the preferred one.
 _CHOICES = 6
 
 
@@ -62,7 +63,7 @@ def body_targets(builder: SequenceBuilder, height: float) -> tuple[BodyTarget, .
 
 
 def _pose_above(body: Pose, rotation: Float[np.ndarray, "3 3"], pivot: Float[np.ndarray, "3"], height: float) -> Pose:
-    """Return the pose with a rotation and a height that keeps the horizontal position of the pivot."""
+    """Return the pose with this rotation and height in which the pivot keeps its horizontal position."""
     position = body.position + body.rotation @ pivot - rotation @ pivot
     return Pose(rotation, np.array([position[0], position[1], height]))
 
@@ -126,13 +127,13 @@ def _place_feet(
     choices = _footholds(builder, target, stance)
     folded = folded_pose(builder.robot)
     for leg in np.flatnonzero(free).tolist():
-        # A leg without a foothold is retracted, or else stays in the air as it is.
+        # A leg without a foothold is retracted; if that is not possible either, it stays in the air as it is.
         after = _place(builder, leg, choices[leg])
         if after is None:
             with suppress(TarsusError):
                 after = _move_leg(builder, leg, folded[leg], "retract", landed=False)
         builder = after or builder
-    # A robot that lies or stands unsteadily at first can't have more margin than that.
+    # A robot that initially rests with a small stability margin is not required to have a greater one.
     remaining, margin = np.flatnonzero(blocking).tolist(), min(builder.margin, builder.initial_margin)
     while found := next(((leg, to) for leg in remaining if (to := _place(builder, leg, choices[leg], margin))), None):
         placed, builder = found
@@ -146,7 +147,7 @@ def _place_feet(
 def _place(
     builder: SequenceBuilder, leg: int, choices: Float[np.ndarray, "n 3"], margin: float = 0.0
 ) -> SequenceBuilder | None:
-    """Place a foot with the first reachable joint angles of shape (n, 3) [rad]; return None if none are."""
+    """Place a foot with the first joint angles of shape (n, 3) that can be reached [rad]; None if none can."""
     for angles in choices:
         with suppress(TarsusError):
             return _move_leg(builder, leg, angles, "place", landed=True, margin=margin)
@@ -165,7 +166,7 @@ def _move_leg(
 def _footholds(
     builder: SequenceBuilder, target: BodyTarget, stance: Float[np.ndarray, "legs 3"]
 ) -> list[Float[np.ndarray, "..."]]:
-    """Return for each leg the joint angles of reachable footholds, shape (n, 3) [rad], near the preferred one first."""
+    """Return by leg the joint angles of reachable footholds, shape (n, 3) [rad], nearest to the preferred one first."""
     robot, g = builder.robot, builder.robot.geometry
     distance = (g.coxa + g.femur + g.tibia) * _DISTANCES[:, None, None]
     yaw = robot.mount_yaw + _COXA_ANGLES[:, None]

@@ -29,7 +29,7 @@ __all__ = ["fold", "sit_down", "stand_up"]
 
 # Default of the least stability margin during changes of footholds [m].
 _MARGIN = 0.010
-# Feet that a robot stands on at least.
+# Least number of feet that bear load for a robot to count as standing on uneven ground.
 _LEAST_FEET = 3
 
 
@@ -127,7 +127,7 @@ def sit_down(
         Greatest joint speed [rad/s] and acceleration [rad/s^2]; by default half the servo's no-load
         speed, reached within 0.05 s.
     loaded : array of bool, shape (legs,), optional
-        Feet that are known to bear load, on ground of any height; by default those on which the robot rests on a plane.
+        Feet that are known to bear load, on ground of any height; by default those on which it rests on flat ground.
 
     Returns
     -------
@@ -203,7 +203,7 @@ def _first_feasible(
 
 
 def _lying(robot: Robot, start: SequenceBuilder) -> MotionSequence:
-    """Return the sequence that lays a robot on its belly."""
+    """Return the sequence by which a robot lies down on its belly."""
     distances = foothold_distances(robot, start.body.inverse() @ start.feet)
     feet = footholds_straight_out(robot, distances, -start.height)
 

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 __all__ = ["PowerOffOrder", "power_off_order"]
 
-# Step of the angle of a falling joint [rad].
+# Step of the femur angle while a leg that is switched off falls [rad].
 _ANGLE_STEP = np.deg2rad(0.25)
 # Least drop that is reported [m].
 _MIN_DROP = 0.001
@@ -34,7 +34,8 @@ class PowerOffOrder:
     order : tuple of (leg, joint)
         Indices of legs and joints: all coxae, then all femurs, then all tibiae.
     drop : array, shape (legs, 3)
-        Drop of the foot or knee when the joint is switched off in that order [m].
+        Drop when the joint is switched off in that order: for femurs that of foot or knee, whichever is greater, for
+        tibiae that of the knee, for coxae 0 [m].
     falls : tuple of str
         One line for each drop of at least a millimetre.
     """
@@ -84,12 +85,12 @@ def power_off_order(robot: Robot, angles: Float[Array, "legs 3"]) -> PowerOffOrd
 
 
 def _drops(robot: Robot, leg: int, space: LegFreeSpace, angles: Float[np.ndarray, "*#batch 3"]) -> tuple[float, float]:
-    """Return the drop of the leg with its femur off, and then of its knee with the tibia off as well [m]."""
+    """Return the drop of the leg once its femur is off, and then that of its knee once the tibia is off too [m]."""
     coxa, femur, tibia = angles
     low = min(float(robot.limits[leg, 1, 0]), femur)
     turned = np.array([[coxa, angle, tibia] for angle in np.arange(femur, low - _ANGLE_STEP, -_ANGLE_STEP)])
     heights = space.heights(turned)
-    # The leg turns about the femur axis until a point touches the ground, or it is at its lowest.
+    # The leg turns about the femur axis until knee or foot touches the ground, or until it is at its lowest.
     stops = np.flatnonzero((heights.min(-1)[1:] < 0) | (np.diff(heights.mean(-1)) > 0))
     last = int(stops[0]) if stops.size else len(turned) - 1
     knee = heights[last, 0]

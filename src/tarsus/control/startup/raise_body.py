@@ -23,13 +23,13 @@ if TYPE_CHECKING:
 
 __all__ = ["lower_body", "raise_body"]
 
-# Spacing of the body heights that are tried for the advice of an error message [m].
+# Spacing of the body heights that are tried to find the one that an error message advises [m].
 _BODY_HEIGHT_STEP = 0.005
-# Tolerance of the joint angles of the final stance, which are computed in two ways [rad].
+# Tolerance of the joint angles of the final stance, which are computed in two ways: by the plan and directly [rad].
 _ANGLE_TOLERANCE = 1e-6
 # Smaller differences of joint angles are ignored [rad]: less than a nanometre at the foot.
 _SAME = 1e-9
-# Feet that stand while others are moved, at least.
+# Least number of feet on the ground while others are moved.
 _MIN_STANCE_FEET = 3
 
 
@@ -81,7 +81,7 @@ def raise_body(
 def _stations(
     builder: SequenceBuilder, feet: Float[np.ndarray, "legs 3"], height: float
 ) -> tuple[FootholdStation, ...]:
-    """Return the stations up to a height; if there are none, say which body heights would work."""
+    """Return the foothold stations up to a height; if there are none, the error says which body height works."""
     robot, start, swing_height = builder.robot, builder.height, builder.swing_height
     try:
         return foothold_stations(robot, start, height, feet, swing_height=swing_height)
@@ -134,10 +134,10 @@ def _at_height(builder: SequenceBuilder, height: float) -> SequenceBuilder:
 
 
 def _change_footholds(builder: SequenceBuilder, angles: Float[np.ndarray, "legs 3"]) -> SequenceBuilder:
-    """Move all legs to a new stance, all feet on the ground, with the body stationary.
+    """Move all legs to a new stance that ends with all feet on the ground, with the body stationary.
 
-    Feet in the air are placed first. Then the tripods are moved, every second leg of the ring, and single legs where a
-    tripod cannot be lifted.
+    Feet in the air are placed first. Then each tripod (the even or the odd legs) is moved as a whole, or single legs
+    where a tripod cannot be lifted.
     """
     remaining = np.abs(angles - builder.angles).max(-1) > _SAME
     while remaining.any():
@@ -154,7 +154,7 @@ def _change_footholds(builder: SequenceBuilder, angles: Float[np.ndarray, "legs 
 def _move_first_group(
     builder: SequenceBuilder, remaining: Bool[np.ndarray, "legs"], angles: Float[np.ndarray, "legs 3"]
 ) -> tuple[SequenceBuilder, Bool[np.ndarray, "legs"]]:
-    """Move the first group of legs, tripods before single ones, that leaves three feet on the ground; return it too."""
+    """Move the first group of legs, tripods before single legs, that leaves three feet on the ground, and return it."""
     failure = TarsusError(
         f"only {int(builder.contacts.sum())} feet are on the ground; lifting one of them requires at least "
         f"{_MIN_STANCE_FEET + 1}"
@@ -173,10 +173,10 @@ def _move_first_group(
 def _move(
     builder: SequenceBuilder, legs: Bool[np.ndarray, "legs"], angles: Float[np.ndarray, "legs 3"], *, margin: float
 ) -> SequenceBuilder:
-    """Move legs by a swing of their feet if possible, else along paths in joint space."""
+    """Move legs by swings of their feet if possible, else along paths in joint space."""
     codes = [builder.robot.leg_codes[leg] for leg in np.flatnonzero(legs)]
     name = f"place {' '.join(codes)}"
-    # A swing keeps the way in which the knee bends.
+    # A swing keeps each leg in its inverse-kinematics branch.
     if (branches(builder.robot, angles) == branches(builder.robot, builder.angles))[legs].all():
         with suppress(TarsusError):
             return builder.swing(name, legs, replace(builder, angles=angles).feet, margin=margin)
