@@ -1,4 +1,4 @@
-"""Playback of a motion sequence: tick by tick, forward or in reverse, with stops at any time."""
+"""Playback of a motion sequence tick by tick: forward or in reverse, to be stopped at any time."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ __all__ = ["SequencePlayer"]
 _INTERVAL = 1e-3
 # Shortest time in which the playback rate changes by 1 [s].
 _RAMP = 0.05
-# Fraction of the greatest joint acceleration that is used, a reserve for changes within an interval.
+# Fraction of the greatest joint acceleration that is used; the rest is a reserve for changes within an interval.
 _ACCELERATION_FRACTION = 0.98
 # Times this close to the end of the sequence count as the end [s].
 _END_TOLERANCE = 1e-9
@@ -40,21 +40,21 @@ class SequencePlayer:
     Attributes
     ----------
     time : float
-        Current time of the sequence [s].
+        Current time within the sequence [s].
     rate : float
         Current playback rate: 1 forward, 0 stopped, -1 reverse.
 
     Notes
     -----
-    The playback rate, the time of the sequence per time, ranges from -1 (reverse) to 1 (forward). It changes as fast as
-    the greatest acceleration of every joint allows, and at most by 20 per second. The joints follow the same path at
-    any rate.
+    The playback rate is the time of the sequence that passes per real time, from -1 (reverse) to 1 (forward). It
+    changes as fast as the greatest accelerations of all joints allow, and by at most 20 per second. The joints follow
+    the same path at any rate.
     """
 
     def __init__(self, sequence: MotionSequence) -> None:
         self.sequence, self.time = sequence, 0.0
         self.rate = self._target_rate = 1.0
-        # Evaluated in advance, so that no tick is delayed when it brakes.
+        # Evaluated in advance, so that no tick takes longer when playback brakes.
         self._derivatives = {id(stage): stage.derivatives for stage in sequence.stages}
 
     @property
@@ -79,7 +79,7 @@ class SequencePlayer:
 
     @property
     def stopped(self) -> bool:
-        """Whether the joints are at rest, after `stop` or at the end."""
+        """Whether the joints are at rest, after `stop` or at the end of playback."""
         return self.done or self.rate == self._target_rate == 0
 
     def stop(self) -> None:
@@ -95,7 +95,7 @@ class SequencePlayer:
         self._target_rate = -1.0
 
     def joints_held(self) -> None:
-        """Take note that the joints have been held where they are: playback goes on from rest."""
+        """Note that the joints have been held in place: playback continues from rest."""
         self.rate = 0.0
 
     def step(self, dt: float) -> Float[np.ndarray, "legs 3"]:
@@ -135,7 +135,7 @@ class SequencePlayer:
             self.time = 0.0 if time < _END_TOLERANCE and self._target_rate < 0 else max(time, 0.0)
 
     def _rate_change(self, dt: float) -> float:
-        """Return the greatest change of the rate within `dt` towards its target."""
+        """Return the greatest change of the rate towards its target that the joints allow within `dt`."""
         stage, fraction = self.sequence.stage_at(self.time)
         change = min(max(self._target_rate - self.rate, -dt / _RAMP), dt / _RAMP)
         if not stage.duration:
@@ -144,7 +144,7 @@ class SequencePlayer:
         speed = first / stage.duration
         curvature = second / stage.duration**2 * self.rate**2
         bound = _ACCELERATION_FRACTION * self.sequence.joint_limits.acceleration
-        # For every joint |curvature + speed * change / dt| <= bound; no change always satisfies this.
+        # Every joint must keep |curvature + speed * change / dt| <= bound; a change of 0 always does.
         with np.errstate(divide="ignore"):
             slope = (bound - np.sign(change) * np.sign(speed) * curvature) / np.abs(speed)
         return math.copysign(min(abs(change), max(float(slope.min()), 0.0) * dt), change)

@@ -27,14 +27,14 @@ __all__ = ["MotionSequence", "SequenceSample"]
 
 
 class SequenceSample(NamedTuple):
-    """A motion sequence at one time.
+    """State of a motion sequence at one time.
 
     Attributes
     ----------
     angles : array, shape (legs, 3)
         Joint angles [rad].
     contacts : array of bool, shape (legs,)
-        Feet on the ground, which do not move.
+        Stationary feet on the ground.
     body : Pose
         Pose of B in G.
     stage : str
@@ -85,7 +85,7 @@ class MotionSequence:
         return self.stages[-1].angles_end
 
     def stage_at(self, time: float) -> tuple[Stage, float]:
-        """Return the stage at a time, clamped to the sequence [s], and the elapsed fraction of its duration."""
+        """Return the stage at a time [s], clamped to the sequence, and the elapsed fraction of its duration."""
         index = min(max(int(np.searchsorted(self.starts, time, side="right")) - 1, 0), len(self.stages) - 1)
         stage = self.stages[index]
         elapsed = (time - self.starts[index]) / stage.duration if stage.duration else 1.0

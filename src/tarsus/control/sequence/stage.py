@@ -34,9 +34,9 @@ GRID = np.linspace(0.0, 1.0, 257)
 """Fractions of a stage's duration at which it is evaluated."""
 
 _FULL_TURN = 2 * np.pi
-# Least distance of a leg on a Cartesian path from its singularities, straight and folded [rad].
+# Least knee bend of a leg on a Cartesian path: distance from the singularities, straight and folded [rad].
 _MIN_BEND = 0.01
-# Fractions of the joint limits that are used, a reserve for the times between the points of `GRID`.
+# Fractions of the joint limits that are used; the rest is a reserve for the times between the points of `GRID`.
 _SPEED_FRACTION = 0.99
 _ACCELERATION_FRACTION = 0.96
 
@@ -49,7 +49,7 @@ class Stage:
     Attributes
     ----------
     name : str
-        Name of the motion.
+        Name of the stage.
     robot : Robot
         A single robot.
     duration : float
@@ -128,11 +128,11 @@ class Stage:
 
     @cached_property
     def _branches(self) -> Bool[np.ndarray, "legs 2"]:
-        """The solution of inverse kinematics that each leg starts with."""
+        """The branch of the inverse kinematics in which each leg starts: see `branches`."""
         return branches(self.robot, self.angles)
 
     def _solve(self, fractions: Float[np.ndarray, "n"]) -> Float[np.ndarray, "n legs 3"]:
-        """Return the inverse kinematics of all feet, each leg with the solution that it starts with."""
+        """Return the joint angles for all feet, each leg in its initial branch; NaN where one is out of reach [rad]."""
         g = self.robot.geometry
         points = points_in_body(self.body_at(fractions), self.feet_at(fractions))
         x, y, z = to_leg_frame(g, points[..., 0], points[..., 1], points[..., 2])
@@ -144,7 +144,7 @@ class Stage:
             bent = (found.far >= min_bend) & (found.near >= min_bend) & (found.beside >= 0)
             ok = bent & (self._branches == (behind, up)).all(axis=-1)
             solved = np.where(ok[..., None], np.stack(found[:3], axis=-1), solved)
-        # The equivalent angle nearest to the start.
+        # Of equivalent angles, a full turn apart, the one nearest to the start.
         return np.asarray(solved - _FULL_TURN * np.round((solved - self.angles) / _FULL_TURN))
 
     @cached_property
@@ -161,7 +161,7 @@ class Stage:
         return np.gradient(angles, step, axis=0, edge_order=2), second
 
     def shortest_duration(self, limits: JointLimits) -> float:
-        """Return the shortest duration within limits of the joints [s]."""
+        """Return the shortest duration within the limits of the joints [s]."""
         speed, acceleration = (np.abs(values).max(0) for values in self.derivatives)
         by_speed = float((speed / limits.speed).max()) / _SPEED_FRACTION
         return max(by_speed, float(np.sqrt((acceleration / limits.acceleration).max() / _ACCELERATION_FRACTION)))
