@@ -1,4 +1,4 @@
-"""Cycle time: the shortest cycles and longest strokes that the joints' speed and acceleration allow."""
+"""Cycle time: the shortest cycles and the longest strokes that the joints' speed and acceleration allow."""
 
 from __future__ import annotations
 
@@ -20,20 +20,24 @@ if TYPE_CHECKING:
 
 __all__ = ["CycleTiming", "cycle_timing"]
 
-# Fractions of the joints' limits available to steady walking; the rest is for changes of the command.
+# Fractions of the joints' limits that steady walking may use; the rest is for changes of the command.
 _SPEED_FRACTION, _ACCELERATION_FRACTION = 0.97, 0.8
+# Sizes of stroke that are examined, as fractions of the longest that the legs reach.
 _SIZES = np.linspace(0.0, 1.0, 6)
+# The least cycle time is the shortest one for a stroke of this size, times this margin.
 _LEAST_SIZE, _CYCLE_TIME_MARGIN = 0.25, 1.15
-# Half of all headings and one direction of turning: a steady cycle in the opposite one is the same in reverse.
+# Twists that are examined: headings over a half turn, and one direction of turning. The steady cycle of the opposite
+# twist is the same in reverse.
 _STRAIGHT = 8
 _TWISTS = np.array([(np.cos(a), np.sin(a), 0.0) for a in np.arange(_STRAIGHT) * np.pi / _STRAIGHT] + [(0.0, 0.0, 1.0)])
 _STRAIGHT_AND_TURNING = slice(_STRAIGHT), slice(_STRAIGHT, None)
+# Number of samples of a swing with a little of the stance on either side.
 _SAMPLES = 33
-# Rest footholds of two robots with one leg [m].
+# Rest footholds, at 0 and at 1, of two robots with one leg each [m].
 _UNIT = np.array([[0.0, 0.0, 0.0], [1.0, 0.0, 0.0]])[:, None, None]
-# Cycle times among which the fastest walk is searched, in shortest ones.
+# Cycle times among which that of the fastest walk is searched, as multiples of the least one.
 _TRIED = np.geomspace(1.0, 4.0, 33)
-# Number of foot positions solved at once: larger arrays take disproportionately long; and of such blocks in one tick.
+# Number of foot positions in a block, solved at once (larger arrays take disproportionately long), and blocks per tick.
 _BLOCK, _BLOCKS = 1900, 2
 
 
@@ -43,10 +47,10 @@ class CycleTiming(NamedTuple):
     Attributes
     ----------
     cycle_time : float
-        Duration of a cycle [s]: one at least in which the joints can swing the feet over a quarter of the stroke that
+        Duration of a cycle [s], long enough for the joints to swing the feet over at least a quarter of the stroke that
         the legs reach.
     stroke, turning : float
-        Longest strokes that the joints are fast enough for, walking straight and turning on the spot [m].
+        Longest strokes for which the joints are fast enough, walking straight and turning on the spot [m].
     """
 
     cycle_time: float
@@ -72,10 +76,10 @@ def cycle_timing(
     stance, limits, joint_limits : StanceGeometry, VelocityLimits, JointLimits
         Body and rest footholds; polygons of the feet; limits of the joints' motion.
     cycle_time : float, optional
-        Commanded duration of a cycle [s]; left out, the one of the fastest walk: a shorter one is limited by the
-        joints to shorter strokes, a longer one by the reach of the legs.
+        Commanded duration of a cycle [s]; left out, that of the fastest walk. With shorter cycles the joints limit the
+        strokes; with longer ones, the reach of the legs does.
     """
-    # Motions of the body during one stance: none, and fractions of the longest that the legs reach.
+    # Motions of the body during one stance: none, and those of all sizes for each twist.
     farthest = limits.feasible_fractions(_TWISTS, stance_time=1.0, duty_factor=gait.duty_factor)[:, None] * _TWISTS
     stroke = np.abs(farthest[:, :1] + 1j * farthest[:, 1:2] + 1j * farthest[:, 2:] * limits.rest).max(-1)
     moves = np.concatenate([np.zeros((1, 3)), (_SIZES[1:, None, None] * farthest).reshape(-1, 3)])
@@ -86,7 +90,7 @@ def cycle_timing(
         if block % _BLOCKS == 0:
             yield
         times.append(cycle.shortest_times(robot, stance, slice(begin, begin + size), joint_limits))
-    # (sizes, twists): the shortest cycle for each size of each stroke.
+    # (sizes, twists): the shortest cycle for each size of the stroke of each twist.
     found = np.concatenate(times)
     shortest = np.vstack([np.full(len(_TWISTS), found[0]), found[1:].reshape(-1, len(_TWISTS))])
     return _timing(np.maximum.accumulate(shortest, axis=0), stroke, cycle_time)
@@ -95,13 +99,13 @@ def cycle_timing(
 def _timing(
     shortest: Float[np.ndarray, "sizes twists"], stroke: Float[np.ndarray, "twists"], cycle_time: float | None
 ) -> CycleTiming:
-    """Return the timing from the shortest cycle for each size of each stroke."""
-    # With less than a good fraction of the stroke, the robot would hardly advance.
+    """Return the timing, given the shortest cycles for each size of the stroke of each twist [s]."""
+    # In shorter cycles the robot would hardly advance, as its strokes would be too short.
     least = _CYCLE_TIME_MARGIN * max(float(np.interp(_LEAST_SIZE, _SIZES, column)) for column in shortest.T)
     straight, turning = (partial(_longest, shortest[:, part], stroke[part]) for part in _STRAIGHT_AND_TURNING)
     if cycle_time is None:
         tried = least * _TRIED
-        # Optimised for walking straight, the most frequent command.
+        # Optimised for walking straight ahead, the most frequent command.
         ahead = np.interp(tried, shortest[:, 0], _SIZES) * stroke[0]
         cycle_time = float(tried[int((np.minimum(ahead, straight(tried)) / tried).argmax())])
     cycle_time = max(cycle_time, least)
@@ -111,9 +115,10 @@ def _timing(
 def _longest(
     shortest: Float[np.ndarray, "sizes n"], stroke: Float[np.ndarray, "n"], cycle_time: Float[np.ndarray, "*batch"]
 ) -> Float[np.ndarray, "*batch"]:
-    """Return the stroke that is feasible in every direction in which the joints, not the legs, are the limit.
+    """Return the stroke that is feasible for every twist for which the joints, not the legs' reach, are the limit.
 
-    If they are in none, it is the strokes of the legs times the ratio of the cycle time to the shortest one.
+    If there is no such twist, it is the longest of the strokes that the legs reach, each extended by the ratio of the
+    cycle time to the shortest one for it.
     """
     sizes = np.stack([np.interp(cycle_time, column, _SIZES) for column in shortest.T], axis=-1)
     bound = np.where(sizes < 1, sizes * stroke, np.inf).min(-1)
@@ -124,20 +129,20 @@ def _longest(
 class _SteadyCycle:
     """Steady gait cycles in one stance, and the joint speeds and accelerations that they need.
 
-    All legs follow the same path through their cycle. It is sampled over the swing and a little of the stance on
-    either side; with a duty factor below 1/2 over the whole cycle, since the foot is then fastest in stance. In the
-    heading frame, at sample and move, a foot is where its rest foothold times `factor` plus `shift` is, x + iy [m].
+    The cycle is the same for all legs but for its phase. It is sampled over the swing and a little of the stance on
+    either side; with a duty factor below 1/2, over the whole cycle, since the foot is then fastest in stance. In the
+    heading frame, the foot at a sample and move is at its rest foothold times `factor` plus `shift`, x + iy [m].
     """
 
     def __init__(self, gait: Gait, moves: Float[np.ndarray, "n 3"], swing_height: float) -> None:
-        """Sample cycles whose moves of the body during one stance are these: forward [m], left [m], yaw [rad]."""
+        """Sample cycles with these moves of the body during one stance: forward [m], left [m], yaw [rad]."""
         begin = gait.duty_factor - 0.02 if gait.duty_factor >= 0.5 else -0.02
         self.phases = np.linspace(begin, 1.02, round(_SAMPLES * (1.02 - begin) / (1.04 - gait.duty_factor)))
-        # With rest footholds 0 and 1: as complex numbers, positions are linear in rest footholds.
+        # As complex numbers, positions are linear in the rest foothold: 0 and 1 determine `shift` and `factor`.
         feet, _ = cycle_feet(
             Gait(gait.duty_factor, (0.0,)), _UNIT, moves, swing_height=np.array(swing_height), phases=self.phases
         )
-        # With the axes in memory in the order in which the legs are solved, these are solved a quarter faster.
+        # With this order of the axes in memory, that in which legs are solved, solving is a quarter faster.
         at_0, at_1 = np.ascontiguousarray((feet[..., 0, 0] + 1j * feet[..., 0, 1]).swapaxes(1, 2))
         self.height: Float[np.ndarray, "m 1"] = feet[0, 0, :, :, 2]
         self.shift, self.factor = at_0, at_1 - at_0
@@ -145,8 +150,8 @@ class _SteadyCycle:
     def shortest_times(
         self, robot: Robot, stance: StanceGeometry, part: slice, joint_limits: JointLimits
     ) -> Float[np.ndarray, "n"]:
-        """Return the shortest cycle for each of some moves [s]."""
-        # (legs, samples, moves); the joints become the first axis.
+        """Return the shortest cycle for each move of a part of all moves [s]."""
+        # Shape (legs, samples, moves); `angles` have the joints as an additional first axis.
         places = self.shift[:, part] + self.factor[:, part] * stance.rest[:, None, None]
         solution = stance.solve(robot.geometry.with_axes(2), places.real, places.imag, self.height)
         angles = np.stack(solution[:3])

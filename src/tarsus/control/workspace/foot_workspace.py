@@ -4,8 +4,8 @@ Points of the ground plane are complex numbers, x + iy in the heading frame: a r
 
 Rays from the rest foothold end where the leg fails: beyond its reach or joint limits, near a straight or folded knee
 (where a joint would have to turn fast for a slow foot), with the knee in the ground, or beyond the middle between two
-feet. Each end defines a tangent to the boundary; the polygon is the intersection of the half planes inside. Where its
-edges still leave the feasible region between rays, sides are moved inwards.
+feet. The ray ends define tangents to the boundary; the polygon is the intersection of the half planes within these.
+Where its edges still leave the feasible region between two rays, sides are moved inwards.
 """
 
 from __future__ import annotations
@@ -27,16 +27,18 @@ if TYPE_CHECKING:
 
 __all__ = ["foot_workspace", "reach_cause", "rest_margin"]
 
+# Numbers of rays, of sides of a polygon, of rings at which rays are tested for a first time, of inner rings among them,
+# tested in a stage of their own, and of the steps between two rings at which the end of a ray is then searched.
 _RAYS, _SIDES, _RINGS, _INNER, _FINE = 24, len(NORMALS), 8, 5, 5
 _DIRECTIONS = np.exp(2j * np.pi * np.arange(_RAYS) / _RAYS)[:, None]
-# Greatest number of passes that move sides inwards.
+# Greatest number of passes in which sides are moved inwards.
 _PASSES = 6
-# The points tested on each side, the side's normal at each of them, as a factor for coordinates along it, and the
-# fractions of the distance from the rest foothold to them that are tested.
+# Points tested on each side, as fractions of its length; for each of these points, the conjugate normal of its side, a
+# factor for coordinates along the normal; fractions of the way from the rest foothold to such a point that are tested.
 _ALONG = np.array([1, 2, 3])[:, None] / 3
 _EDGE_NORMALS = np.repeat(NORMALS_CONJUGATE, len(_ALONG))[:, None]
 _FRACTIONS = np.array([0.3, 0.6, 0.8, 0.92, 1.0])[:, None, None]
-# Sides are moved by this fraction more than needed, so that the next corners are inside; tolerance of fractions.
+# Fraction by which sides are moved further than needed, so that the new corners are inside; tolerance of fractions.
 _EXTRA, _TOLERANCE = 0.01, 1e-9
 
 
@@ -54,7 +56,7 @@ def foot_workspace(
     -------
     array, shape (legs, 16)
         Distances of the sides from the heading frame's origin along `NORMALS` [m]. If a foot cannot be at its rest
-        foothold, a side lies before that foothold.
+        foothold, that foothold is outside the polygon.
     """
     margin, spacing = LegMargin(robot, stance), partial(_spacing, stance.rest, foot_distance)
     step = _ring(robot)
@@ -87,7 +89,7 @@ def foot_workspace(
 
 
 def rest_margin(robot: Robot, stance: StanceGeometry, *, knees: bool = True) -> Float[np.ndarray, "legs"]:
-    """Return how far a foot can move from its rest foothold in any direction, up to a small distance.
+    """Return how far each foot can move from its rest foothold in every direction; tested up to a small distance only.
 
     Parameters
     ----------
@@ -99,7 +101,7 @@ def rest_margin(robot: Robot, stance: StanceGeometry, *, knees: bool = True) -> 
     Returns
     -------
     array, shape (legs,)
-        Distances [m]; where negative, a side of the `foot_workspace` lies before the rest foothold.
+        Distances [m]; where negative, the rest foothold is outside the polygon of `foot_workspace`.
     """
     rays = np.arange(2)[:, None, None] * (_ring(robot) / _FINE)
     out = np.concatenate([[[0j]], rays[1] * _DIRECTIONS])
@@ -109,7 +111,7 @@ def rest_margin(robot: Robot, stance: StanceGeometry, *, knees: bool = True) -> 
 
 
 def reach_cause(robot: Robot, stance: StanceGeometry) -> Cause:
-    """Return which leg has no room about its rest foothold, and why.
+    """Return which leg has the least room around its rest foothold, and what limits it.
 
     Parameters
     ----------
@@ -123,14 +125,18 @@ def reach_cause(robot: Robot, stance: StanceGeometry) -> Cause:
 
 
 def _ring(robot: Robot) -> float:
-    """Return the distance between the rings at which rays are evaluated [m]."""
+    """Return the distance between two rings at which rays are tested [m]."""
     return float((robot.geometry.femur + robot.geometry.tibia).max()) / _RINGS
 
 
 def _first_zero(
     radii: Float[np.ndarray, "k m n"], margin: Float[np.ndarray, "*batch"], *, interpolation: float
 ) -> Float[np.ndarray, "rays legs"]:
-    """Return where the margin becomes negative along each ray ``(rays, legs)``, or the end of the ray."""
+    """Return where the margin becomes negative along each ray ``(rays, legs)``, or the end of the ray.
+
+    `radii` are the tested points of the rays. With the `interpolation` 0, the last one before is returned; with 1, the
+    zero interpolated between two. Where a ray fails at its start, the result is minus `RESERVED_MARGIN`.
+    """
     fails = margin < 0
     first = np.where(fails.any(axis=0), fails.argmax(axis=0), len(margin) - 1)[None]
     last = np.maximum(first - 1, 0)
@@ -145,9 +151,9 @@ def _first_zero(
 def _spacing(
     rest: Complex[np.ndarray, "legs"], foot_distance: float, out: Complex[np.ndarray, "*#batch #legs"]
 ) -> Float[np.ndarray, "..."]:
-    """Return the factor by which `out` may be scaled before a foot passes the middle to a neighbour's rest foothold.
+    """Return the factor by which `out` may be scaled before a foot comes too near the middle to another rest foothold.
 
-    Half the least distance of feet is kept on either side of the middle.
+    Half the least distance between two feet is kept free on either side of the middle.
     """
     path = rest[None, :] - rest[:, None]
     length = np.abs(path) + np.where(np.eye(len(rest), dtype=bool), 1e9, 0.0)
@@ -157,13 +163,13 @@ def _spacing(
 
 
 def _sides(rest: Complex[np.ndarray, "legs"], reach: Float[np.ndarray, "n legs"]) -> Float[np.ndarray, "legs 16"]:
-    """Return the polygons' sides from the lengths of the rays ``(rays, legs)``."""
+    """Return the polygons' sides, given the lengths of the rays ``(rays, legs)`` [m]."""
     reach = np.maximum(reach, -RESERVED_MARGIN)
     ends = reach * _DIRECTIONS
     tangent = np.roll(ends, -1, axis=0) - np.roll(ends, 1, axis=0)
     size = np.abs(tangent)
     normal = -1j * tangent / np.where(size > 0, size, 1.0)
-    # Where the boundary runs along the ray, the direction of the ray is used.
+    # Where the boundary runs along the ray, the direction of the ray is used as the normal.
     normal = np.where((normal.conj() * _DIRECTIONS).real < 0.3, _DIRECTIONS, normal)
     side = np.round(np.angle(normal) * _SIDES / (2 * np.pi)).astype(int) % _SIDES
     bounds = np.full((len(rest), _SIDES), reach.max())

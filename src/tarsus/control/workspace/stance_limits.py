@@ -1,4 +1,4 @@
-"""Limits that hold in the stances of a walk, found in stages of less than a tick each."""
+"""Velocity limits that hold in the stances of a walk, found in stages of less than a tick each."""
 
 from __future__ import annotations
 
@@ -25,30 +25,30 @@ if TYPE_CHECKING:
 
 __all__ = ["shifted_limits", "velocity_limits"]
 
-# Phases of a body shift at which the reach of the legs is examined: it points in all directions.
+# Phases of a body shift at which the reach of the legs is examined: over a cycle, the shift points in all directions.
 _SHIFT_PHASES = np.arange(8) / 8
 
 
 def velocity_limits(
     robot: Robot, gait: Gait, stances: Sequence[StanceGeometry], *, foot_distance: float, excluded: tuple[int, ...] = ()
 ) -> Incremental[VelocityLimits]:
-    """Find the limits that hold in each of some stances.
+    """Find the limits that hold in all of some stances.
 
     Parameters
     ----------
     robot, gait : Robot, Gait
         A single robot; a gait without a body shift.
     stances : sequence of StanceGeometry
-        At least one; the last is the one that stays.
+        At least one; the limits refer to the rest footholds of the last, in which the robot stays.
     foot_distance : float
         Least distance between two feet [m].
     excluded : tuple of int
-        Legs that do not step: their position is not bounded here, but may shift the centre of mass.
+        Legs that do not step: their feet are not bounded here, but their positions may shift the centre of mass.
     """
     found, check, sets = list[VelocityLimits](), None, support_sets(gait, excluded)
     for stance in stances:
         sides = yield from foot_workspace(robot, stance, foot_distance=foot_distance)
-        # Prepared in this stage, which has little else to do.
+        # Prepared in this stage of the computation, which has little else to do.
         check = check or StabilityCheck(robot, sets, excluded)
         centre, shift = check.centre_of_mass(stance, sides)
         yield
@@ -82,7 +82,7 @@ def shifted_limits(
         sides = yield from foot_workspace(robot, stand, foot_distance=foot_distance)
         limits = limits.intersection(_limits_in(everywhere, stand, sides, 1.0))
         yield
-    # Longer polygons would have to shrink more for stability, in their short directions too.
+    # Elongated polygons would have to shrink more for stability, and in their short directions too.
     around = (NORMALS_CONJUGATE * stance.rest[:, None]).real + max(float(limits.margins.min()), 0.0)
     sides, fraction = np.minimum(limits.bounds, around), 1.0
     for phase, down in zip(*support_phases(gait), strict=True):
@@ -102,11 +102,11 @@ def _displaced(stance: StanceGeometry, displacement: complex) -> StanceGeometry:
 def _limits_in(
     check: StabilityCheck, stance: StanceGeometry, sides: Float[np.ndarray, "legs 16"], fraction: float
 ) -> VelocityLimits:
-    """Return the limits in one stance, for a fraction of the polygons in which no support tips over."""
+    """Return the limits in one stance, with polygons shrunk to the fraction at which the robot stays stable."""
     at_rest = (NORMALS_CONJUGATE * stance.rest[:, None]).real
     free = sides - at_rest
     free = np.where(free > 0, free * fraction, free)
-    # With the centre of mass outside a support polygon, no step is safe.
+    # With the centre of mass outside a support polygon at rest, no step is safe: there is no room around a foothold.
     free = free if fraction > 0 else np.minimum(free, -1e-3)
     bounds = at_rest + free
     bounds[check.excluded], free[check.excluded] = np.inf, np.inf
