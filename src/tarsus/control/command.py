@@ -1,4 +1,4 @@
-"""Commands: what the robot is asked to do, and what of earlier commands still holds."""
+"""Commands: what the robot is asked to do, and how a command builds on earlier ones."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ __all__ = ["BODY_AXES", "Command", "merged", "stopped"]
 BODY_AXES = ("x", "y", "z", "roll", "pitch", "yaw")
 """The six axes of a body pose."""
 
-# No length of a robot [m] and no cycle time [s] is greater, and the squares of greater values may overflow.
+# Greatest magnitude of any value but the twist [m], [rad], [m/s], [s]: beyond any robot, and safe to square.
 _MOST = 1e3
 _PARAMETERS = ("body", "gait", "body_height", "swing_height", "stance_width", "cycle_time", "sway")
 
@@ -27,7 +27,7 @@ _PARAMETERS = ("body", "gait", "body_height", "swing_height", "stance_width", "c
 @represented()
 @dataclass(frozen=True, kw_only=True)
 class Command:
-    """What the robot is commanded to do; what is None stays as it is.
+    """What the robot is commanded to do; what is None stays as it is, except foot velocities.
 
     Attributes
     ----------
@@ -36,24 +36,25 @@ class Command:
     body : (x, y, z, roll, pitch, yaw), optional
         Body pose [m], [rad] against level over the feet at the body height.
     gait : str or Gait, optional
-        The order of the steps.
+        Order of the steps: the name of a gait, or a `Gait` for the robot's number of legs.
     body_height : float, optional
         Height of the body's origin over the ground [m].
     swing_height : float, optional
         Height of a swinging foot over its foothold [m].
     stance_width : float, optional
-        Distance that the feet rest farther out than by default, away from each coxa axis [m].
+        How much farther from its coxa axis each foot rests than by default [m].
     cycle_time : float or "auto", optional
         Duration of a cycle [s]; "auto" for the one with the highest top speed.
     sway : (x, y, z, roll, pitch, yaw), optional
-        Amplitudes of a sway of the body with the steps [m], [rad].
+        Amplitudes of a periodic motion of the body in time with the steps [m], [rad].
     foot_targets : mapping of leg to (x, y, z) or None, optional
         Legs to take out of the gait, and the targets of their feet in the heading frame [m]; None for a leg to return
         to the gait.
     foot_velocities : mapping of leg to (x, y, z), optional
-        Velocities of the feet of such legs instead, in the heading frame [m/s].
+        Legs to take out of the gait, and velocities of their feet instead of targets, in the heading frame [m/s]. They
+        hold for this command only.
     state : RobotState or str, optional
-        The state that is wanted, standing, lying or folded: for a `RobotController`.
+        The state to go to: standing, lying or folded. Only a `RobotController` uses it.
 
     Raises
     ------
@@ -100,27 +101,27 @@ class Command:
 
     @property
     def parameters(self) -> dict[str, Any]:
-        """The parameters of walking that are commanded, by name: those that don't stay as they are."""
+        """The commanded parameters of walking, by name: those that are not None."""
         return {name: value for name in _PARAMETERS if (value := getattr(self, name)) is not None}
 
     @property
     def only_twist(self) -> bool:
-        """Whether all of the walk but the twist stays as it is."""
+        """Whether the command changes nothing of the walk but the twist."""
         return self.foot_targets is None and self.foot_velocities is None and not self.parameters
 
 
 def merged(command: Command, before: Command, legs: int) -> Command:
-    """Return a command with what holds of the one before: what is None stays as it was, but for foot velocities.
+    """Return a command completed from the one before: what is None stays as it was, except foot velocities.
 
     Parameters
     ----------
     command, before, legs : Command, Command, int
-        The command; the one before, merged as well; the robot's number of legs.
+        The command; the one before, itself already merged; the robot's number of legs.
 
     Raises
     ------
     InputError
-        If the gait or a leg does not fit the robot, or the state can't be asked for.
+        If the gait or a leg does not fit the robot, or the state is not one that a command may ask for.
     UnknownNameError
         If there is no such gait.
     """
@@ -140,13 +141,13 @@ def merged(command: Command, before: Command, legs: int) -> Command:
 
 
 def stopped(command: Command, legs: int) -> Command:
-    """Return the command to stand with every foot in the gait: what a robot does before it sits down."""
+    """Return a command with no twist and every foot back in the gait: a robot stops like this before it sits down."""
     targets = dict.fromkeys(range(legs)) if command.foot_targets or command.foot_velocities else None
     return replace(command, twist=(0.0, 0.0, 0.0), foot_targets=targets, foot_velocities=None)
 
 
 def _by_leg(name: str, given: Any, *, back: bool) -> dict[int, tuple[float, ...] | None]:
-    """Return the values by leg; with `back`, a value may be None."""
+    """Return the checked values by leg; with `back`, a value may be None, to return the leg to the gait."""
     if not isinstance(given, Mapping):
         raise InputError(f"the command's {name} is {given!r}; it must be a mapping of legs to x, y, z")
     found: dict[int, tuple[float, ...] | None] = {}

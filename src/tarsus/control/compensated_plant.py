@@ -1,4 +1,4 @@
-"""A plant whose commands compensate for the deflection of its loaded joints, tick by tick."""
+"""A plant that adds to its commands what the loaded joints deflect, tick by tick."""
 
 from __future__ import annotations
 
@@ -23,25 +23,25 @@ if TYPE_CHECKING:
 
 __all__ = ["CompensatedPlant"]
 
-# Bandwidth with which the compensation follows the load [rad/s]: feet take over their load within some 80 ms.
+# Bandwidth with which the compensation follows the load [rad/s]: a foot takes over its load within about 80 ms.
 _BANDWIDTH = 40.0
 
 
 @represented("plant", "share")
 class CompensatedPlant:
-    """Executes on another plant, with what the joints yield under load added to their commands.
+    """Executes commands on another plant, with the expected deflection of the loaded joints added to them.
 
-    The loads are those of vertical forces on the feet that stand, with the pose and the contacts that the controller
-    gives out; where the belly bears the robot, those of the legs' own weights. Commands stay within the joint limits.
-    Real and simulated servos yield: without compensation the body sags, swinging feet touch the ground early, and the
-    walk is shorter than commanded.
+    The joint loads follow from vertical forces on the standing feet, for the pose and the contacts that the controller
+    gives out; where the belly bears the robot, from the legs' own weight alone. Commands stay within the joint limits.
+    Real and simulated servos yield under load: without compensation the body sags, swinging feet touch the ground
+    early, and the walk is shorter than commanded.
 
     Parameters
     ----------
     plant : Plant
-        What executes the commands: a simulated robot, or servos.
+        The plant that executes the commands: a simulated robot, or servos.
     springs : JointSprings, optional
-        Elasticity of the joints; the robot's servos where left out.
+        Elasticity of the joints; by default that of the robot's servos.
     share : float
         Share of the deflection that is compensated for, 0 to 1.
     payload : Payload or float
@@ -52,20 +52,20 @@ class CompensatedPlant:
     robot : Robot
         The plant's robot.
     plant : Plant
-        The plant.
+        The plant that executes the commands.
     share : float
-        The share.
+        Share of the deflection that is compensated for.
 
     Raises
     ------
     MissingDataError
-        If masses of the robot are unknown, or a servo without `springs`.
+        If masses of the robot are unknown, or a servo is unknown and `springs` is left out.
     InputError
         If the share is not between 0 and 1.
 
     See Also
     --------
-    tarsus.compensate_deflection : the same for a planned walk.
+    tarsus.compensate_deflection : The same for a planned walk.
     """
 
     def __init__(
@@ -78,7 +78,7 @@ class CompensatedPlant:
         self._offset = CriticallyDamped.still(np.zeros(3 * self.robot.legs))
 
     def start(self, output: ControlOutput) -> None:
-        """Get ready, as the plant does, with the compensation of the pose that it starts in.
+        """Start the plant, with the deflection in the initial pose compensated for.
 
         Parameters
         ----------
@@ -89,7 +89,7 @@ class CompensatedPlant:
         self.plant.start(self._compensated(output))
 
     def step(self, output: ControlOutput, dt: float) -> SensorReadings:
-        """Execute joint angles for one tick, and measure, as the plant does.
+        """Execute compensated joint angles for one tick, and return what the plant measures.
 
         Parameters
         ----------
@@ -105,7 +105,7 @@ class CompensatedPlant:
         return self.plant.step(self._compensated(output), dt)
 
     def stop(self) -> None:
-        """End, as the plant does."""
+        """Stop the plant."""
         self.plant.stop()
 
     def _deflection(self, output: ControlOutput) -> Float[np.ndarray, "_"]:

@@ -1,4 +1,4 @@
-"""What the robot does in an activity, and what a robot controller makes of it for each tick."""
+"""Snapshot: the robot as its activity moves it. ControlOutput: what a robot controller gives out in each tick."""
 
 from __future__ import annotations
 
@@ -21,30 +21,30 @@ __all__ = ["ControlOutput", "Snapshot"]
 
 
 class Snapshot(NamedTuple):
-    """The robot in an activity; poses and points are in the activity's own ground frame.
+    """The robot as its activity moves it; poses and points are in the activity's own ground frame.
 
     Attributes
     ----------
     angles : array, shape (legs, 3)
         Joint angles [rad].
     body : Pose
-        The body's pose.
+        Pose of the body.
     feet : array, shape (legs, 3), or None
-        The feet [m]; None where they follow from angles and body.
+        The feet [m]; None where they are to be computed from angles and body.
     contacts : array of bool, shape (legs,)
         Which feet are on the ground.
     belly : bool
         Whether the body rests on the ground.
     state : RobotState
-        What the robot does.
+        State of the robot.
     activity : str
-        What it does in detail.
+        The state in detail: the walk state, the stage of a motion sequence, or the state.
     twist : tuple of float
         Speed of the walk: forward, left [m/s], turning [rad/s].
     limitations : tuple of Limitation
         Why the command is not met in full.
     felt : bool
-        Whether the feet follow ground that is felt, which need not be a plane.
+        Whether the feet follow ground that is felt, which need not be a plane, or slide: the guard does not check them.
     """
 
     angles: Float[np.ndarray, "legs 3"]
@@ -64,26 +64,26 @@ class Snapshot(NamedTuple):
 )
 @dataclass(frozen=True, kw_only=True, eq=False)
 class ControlOutput:
-    """The joint angles of a tick, and what they belong to.
+    """The joint angles of a tick, and the state of the robot that they belong to.
 
     Attributes
     ----------
     time : float
-        Sum of all ticks [s].
+        Sum of the durations of all ticks so far [s].
     angles : array, shape (legs, 3)
         Joint angles to execute, read-only [rad].
     state : RobotState
-        What the robot does.
+        State of the robot.
     activity : str
-        What it does in detail: the walk state, the stage of rising, sitting or folding, or the state.
+        The state in detail: the walk state, the stage of rising, sitting or folding, or the state.
     limitations : tuple of Limitation
         Why the command is not met in full.
     interventions : tuple of Intervention
-        What the guard began to prevent in this tick.
+        Interventions of the guard that began in this tick.
     guard : str
-        The guard's state; empty without a guard.
+        State of the guard; empty without a guard.
     body : Pose
-        The body's pose in G, as commanded.
+        Pose of the body in G, as commanded.
     feet : array, shape (legs, 3)
         The feet in G, as commanded [m].
     contacts : array of bool, shape (legs,)
@@ -95,9 +95,9 @@ class ControlOutput:
     gait : Gait
         Order of the steps.
     cycle_time : float
-        Duration of a cycle, 0 before the first walk [s].
+        Duration of a gait cycle; 0 until the robot has stood or walked for a tick [s].
     at_rest : bool
-        Whether the robot neither moves nor is about to.
+        Whether the robot is still, and no change of state is about to begin.
     """
 
     time: float

@@ -19,12 +19,12 @@ if TYPE_CHECKING:
 
 __all__ = ["CriticallyDamped", "integral_factors"]
 
-# A filter this close to its target, and as slow, is at it [m, rad, m/s, rad/s].
+# Distance from the target and rate up to which a filter counts as settled at its target [m, rad, m/s, rad/s].
 _SETTLED = 1e-7
 
 
 class CriticallyDamped(NamedTuple):
-    """A value that follows a target, and its rate; arrays of one shape.
+    """A value that follows a target, and its rate: two arrays of the same shape.
 
     Attributes
     ----------
@@ -56,7 +56,7 @@ class CriticallyDamped(NamedTuple):
         return CriticallyDamped(value, (decay - bandwidth * kept) * self.rate - bandwidth * bandwidth * kept * gap)
 
     def settling_step(self, target: Float[np.ndarray, "n"], dt: float, *, bandwidth: float) -> CriticallyDamped:
-        """Return what `step` does; once the filter is at its target, the same object from then on."""
+        """Return what `step` does; once settled at its target, the same object while that target object is given."""
         if self.value is target:
             return self
         after = self.step(target, dt, bandwidth=bandwidth)
@@ -68,7 +68,7 @@ class CriticallyDamped(NamedTuple):
     def step_with_integral(
         self, target: Float[np.ndarray, "n"], dt: float, *, bandwidth: float
     ) -> tuple[CriticallyDamped, list[float]]:
-        """Return what `step` does, and the value's integral over the time; in floats, for few values."""
+        """Return what `step` does, and the integral of each value over the time; in floats, fast for few values."""
         w, decay = bandwidth, math.exp(-bandwidth * dt)
         values, rates, integrals = [], [], []
         for goal, value, rate in zip(target.tolist(), self.value.tolist(), self.rate.tolist(), strict=True):
@@ -77,13 +77,13 @@ class CriticallyDamped(NamedTuple):
             moved = gap + slope * dt
             values.append(goal + moved * decay)
             rates.append((slope - w * moved) * decay)
-            # The differential equation, integrated.
+            # The differential equation, integrated over the time.
             integrals.append(goal * dt - (rates[-1] - rate + 2 * w * (values[-1] - value)) / (w * w))
         return CriticallyDamped(np.array(values), np.array(rates)), integrals
 
 
 def integral_factors(time: Any, *, bandwidth: float) -> tuple[Any, Any, Any]:
-    """Return the factors of target, value and rate in the value's integral over a time.
+    """Return the factors of target, initial value and initial rate in the integral of the value over a time.
 
     Parameters
     ----------

@@ -13,7 +13,7 @@ Incremental: TypeAlias = Generator[None, None, _T]
 
 
 def complete(work: Incremental[_T]) -> _T:
-    """Run all stages of a computation, and return its result."""
+    """Run all stages of a computation at once, and return its result."""
     while True:
         try:
             next(work)

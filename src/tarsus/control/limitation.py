@@ -14,17 +14,17 @@ __all__ = ["Cause", "Limitation", "LimitationKind"]
 _NONE = math.nan
 
 
-# Unit and scale of the numbers of a kind.
+# Unit in which the numbers of a kind are shown, and how many of them are in one SI unit.
 _LENGTH, _FRACTION, _NUMBER = ("mm", 1000.0), ("%", 100.0), ("", 1.0)
 
 
 class LimitationKind(StrEnum):
-    """What of a command is not met in full; the value is the name in records and messages.
+    """What a limitation is about, mostly a part of the command; the value is the name in records and messages.
 
     Attributes
     ----------
     unit : str
-        The unit in which its numbers are shown.
+        Unit in which the numbers of the kind are shown.
     scale : float
         How many of these units are in one SI unit.
     """
@@ -33,7 +33,7 @@ class LimitationKind(StrEnum):
     scale: float
 
     def __new__(cls, name: str, unit: str, scale: float) -> Self:
-        """Return the member of a row of the table."""
+        """Return the member for a row of the table below."""
         kind = str.__new__(cls, name)
         kind._value_, kind.unit, kind.scale = name, unit, scale
         return kind
@@ -60,11 +60,11 @@ class Cause(NamedTuple):
     Attributes
     ----------
     reason : str
-        In words, without numbers that change from tick to tick.
+        The reason in words, without numbers that change from tick to tick.
     leg : str
         Name of the leg that sets the bound; empty where none does.
     margin : float
-        Static stability margin that would result [m]; NaN where it is not the reason.
+        Static stability margin that would result [m]; NaN where the margin is not the reason.
     least_margin : float
         Least static stability margin that is allowed [m].
     """
@@ -75,12 +75,12 @@ class Cause(NamedTuple):
     least_margin: float = _NONE
 
     def text(self) -> str:
-        """Return it as a line of text."""
+        """Return the cause as a line of text."""
         cause = ": ".join(part for part in (self.leg, self.reason) if part)
         return cause + _margin_text(self.margin, self.least_margin)
 
     def limitation(self, kind: LimitationKind, *, asked: float = _NONE, granted: float = _NONE) -> Limitation:
-        """Return the limitation of a part of a command that this causes; `asked`, `granted` as in `Limitation`."""
+        """Return the limitation of a kind that has this cause; `asked` and `granted` are those of `Limitation`."""
         reason, leg, margin, least = self
         return Limitation(
             kind=kind, cause=reason, leg=leg, asked=asked, granted=granted, margin=margin, least_margin=least
@@ -95,7 +95,7 @@ class Limitation:
     Attributes
     ----------
     kind : LimitationKind
-        The part of the command.
+        What is limited, mostly a part of the command.
     cause : str
         The reason in words, without numbers that change from tick to tick.
     leg, joint : str
@@ -126,7 +126,7 @@ class Limitation:
         return (str(self.kind), self.cause, self.leg, self.joint)
 
     def text(self) -> str:
-        """Return it as a line of text, in mm, degrees, seconds and percent."""
+        """Return the limitation as a line of text, in mm, degrees, seconds and percent."""
         where = " ".join(name for name in (self.leg, self.joint) if name)
         numbers = [self._granted_text(), self._value("bound ", self.bound)]
         reason = Cause(self.cause, where, self.margin, self.least_margin).text()

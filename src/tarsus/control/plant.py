@@ -34,13 +34,13 @@ class Plant(Protocol):
     Attributes
     ----------
     robot : Robot
-        Which robot it is.
+        The robot that executes the joint angles.
     """
 
     robot: Robot
 
     def start(self, output: ControlOutput) -> None:
-        """Get ready: bring the joints to where the controller starts, however long that takes."""
+        """Bring the joints to the angles with which the controller starts, however long that takes."""
 
     def step(self, output: ControlOutput, dt: float) -> SensorReadings:
         """Execute joint angles for one tick, and return what is measured at its end.
@@ -48,11 +48,11 @@ class Plant(Protocol):
         Parameters
         ----------
         output, dt : ControlOutput, float
-            What the controller gave out; a real plant uses its angles only; duration of the tick [s].
+            What the controller gave out, of which a real plant uses only the angles; duration of the tick [s].
         """
 
     def stop(self) -> None:
-        """End: release what is held; also called after an error, and more than once."""
+        """Release what is held; may be called after an error, and more than once."""
 
 
 class Environment:
@@ -81,18 +81,18 @@ class Environment:
         Parameters
         ----------
         leg, height : int, float
-            Number of the leg; over flat ground [m].
+            Number of the leg; height relative to the flat ground [m].
         """
         require_leg_number("environment", leg, len(self._height))
         self._height[leg], self._contacts = require_float("height", height, finite=True), True
 
     def set_tilt(self, roll: float, pitch: float) -> None:
-        """Set by how much the ground is tilted; an attitude sensor is present from then on.
+        """Set the tilt of the ground; an attitude sensor is present from then on.
 
         Parameters
         ----------
         roll, pitch : float
-            Left side up, front down, as the robot sees it wherever it turns [rad].
+            Positive with the left side up, and with the front down, in the robot's axes whatever its heading [rad].
         """
         self._tilt = require_float("roll", roll, finite=True), require_float("pitch", pitch, finite=True)
         self._attitude = True
@@ -103,18 +103,18 @@ class Environment:
         Parameters
         ----------
         leg, force : int, float
-            Number of the leg; ground on foot [N].
+            Number of the leg; force of the ground on the foot, positive upward [N].
         """
         require_leg_number("environment", leg, len(self._force))
         self._force[leg], self._forces = require_float("force", force, finite=True), True
 
     def readings(self, output: ControlOutput) -> dict[str, Any]:
-        """Return what is measured, by the names of `SensorReadings`.
+        """Return the readings of the sensors that are present, named as in `SensorReadings`; None for the others.
 
         Parameters
         ----------
         output : ControlOutput
-            What the controller gave out: feet, body's pose as it would be on flat ground, and which feet bear load.
+            What the controller gave out: feet and body pose as on flat ground, and which feet bear load.
         """
         touching = output.feet[:, 2] <= self._height + _TOUCH
         return {
@@ -124,18 +124,18 @@ class Environment:
         }
 
     def _tilted(self, output: ControlOutput) -> RollPitch:
-        """Return roll and pitch: the body's, the ground's, and those of its plane against that of the feet [rad]."""
+        """Return roll and pitch: commanded tilt, plus the tilt set, plus that of unequal ground under feet [rad]."""
         roll, pitch, yaw = np.asarray(output.body.rpy).tolist()
         feet, height = output.feet[output.contacts], self._height[output.contacts]
         over = feet - feet.mean(axis=0)
         slope_x, slope_y = np.linalg.lstsq(over[:, :2], over[:, 2] - height, rcond=None)[0].tolist()
-        # The feet are in G, the tilt is about the body's axes.
+        # The slopes are along the axes of G, the tilt is about the body's axes.
         tilt = complex(-math.atan(slope_y), math.atan(slope_x)) * cmath.exp(-1j * yaw) + complex(*self._tilt)
         return roll + tilt.real, pitch + tilt.imag
 
     def _loads(self, feet: Float[np.ndarray, "legs 3"], bears: Bool[np.ndarray, "legs"]) -> Float[np.ndarray, "legs"]:
-        """Return the ground's vertical forces on the feet ``(legs,)`` [N]."""
-        # The walk controller takes the centre of mass to be in the middle of the feet; only so is a share no error.
+        """Return the vertical forces of the ground on the feet ``(legs,)`` [N]."""
+        # The walk controller assumes the centre of mass over the mean of the feet, so shares are computed with it here.
         centre = feet[:, :2].mean(axis=0)
         share = balanced_forces(feet.tolist(), bears.tolist(), centre.tolist(), self._weight)
         return np.where(bears, np.array(share) + self._force, 0.0)

@@ -1,4 +1,4 @@
-"""Sensor readings: what plants measure and report to a controller, and what is left of it after validation."""
+"""Sensor readings: what plants measure and report to a controller, and the part that passed validation."""
 
 from __future__ import annotations
 
@@ -50,7 +50,7 @@ class SensorReadings:
         Heights of the ground around the body.
     age : float or mapping of str to (float or array of shape (legs, 3))
         Time since the measurement [s]: of all channels, or of each by its name; channels not in the mapping have
-        age 0. Where servos are asked in turn, that of `joint_angles` may be one for each joint.
+        age 0. Where servos are read in turn, `joint_angles` may have an age for each joint.
     """
 
     joint_angles: Any = None
@@ -68,7 +68,7 @@ class SensorReadings:
 
     @property
     def has_ground_feedback(self) -> bool:
-        """Whether anything that tells of the ground is measured: contacts, attitude, forces or torques."""
+        """Whether any channel that tells of the ground is present: contacts, attitude, forces or torques."""
         return not (self.contacts is None and self.attitude is None and self.forces is None and self.torques is None)
 
 
@@ -77,12 +77,12 @@ CHANNELS = tuple(field.name for field in fields(SensorReadings) if field.name !=
 
 
 class ValidReadings(NamedTuple):
-    """Readings that passed validation, as plain Python values: None for a channel, or one leg of it, that did not.
+    """Readings that passed validation, as plain Python values; a channel, or one leg of it, that did not is None.
 
     Attributes
     ----------
     joint_angles, joint_speeds, currents, temperatures, voltages, torques : tuple of (three floats or None), or None
-        Of each leg, for coxa, femur and tibia; as in `SensorReadings`.
+        By leg, the values of coxa, femur and tibia; units as in `SensorReadings`.
     contacts : tuple of (bool or None), or None
         Which feet touch the ground.
     forces : tuple of ((x, y, z) or None), or None
@@ -94,17 +94,17 @@ class ValidReadings(NamedTuple):
     ground : GroundHeights or None
         Heights of the ground around the body.
     joint_age : float
-        Time since the measurement of the joint angles, or of the oldest [s].
+        Time since the measurement of the joint angles, of the oldest where their ages differ [s].
     joint_ages : tuple of (three floats), or None
-        Where they differ, the same of the joints of each leg [s].
+        By leg, the age of each joint's angle, where ages were given joint by joint; else None [s].
     ground_age : float
         Time since the measurement of the heights [s].
     contact_age : float
-        Time since the measurement of contacts, or else of forces, or else of joint angles [s].
+        Time since the measurement of contacts; without contacts, of forces; without either, of joint angles [s].
     predicted : frozenset of int
-        Legs whose coxa angle has not been measured in this tick.
+        Legs whose coxa angle is not new in this tick, but moved on from an earlier measurement as commanded.
     rejected : tuple of str
-        Rejected channels, or legs of them, with the reason.
+        Rejected channels, or single legs of a channel, each with the reason.
     """
 
     joint_angles: tuple[Vector | None, ...] | None = None

@@ -35,7 +35,7 @@ if TYPE_CHECKING:
 
 __all__ = ["RobotController"]
 
-# A robot whose joints are all slower than this is at rest, with all legs and without some [rad/s].
+# Joint speed below which the robot counts as at rest, with all of its legs and with failed ones [rad/s].
 _AT_REST, _AT_REST_DAMAGED = 5e-3, 0.05
 
 
@@ -43,38 +43,38 @@ _AT_REST, _AT_REST_DAMAGED = 5e-3, 0.05
 class RobotController:
     """Controls a robot in all its states: lying, rising, standing, walking, sitting down, folding.
 
-    Each tick takes a command, with the state that is wanted, and sensor readings, and gives joint angles. A guard,
-    which is independent of the rest, checks every tick's angles before they are given out; while it holds the robot,
-    the state is FAULT and nothing else advances.
+    Each tick takes a command, which names the wanted state, and sensor readings, and gives joint angles. A guard, which
+    is independent of the rest, checks the angles of every tick before they are given out; while it holds the robot, the
+    state is FAULT and nothing else advances.
 
     Parameters
     ----------
     robot : Robot
         A single robot.
     gait : Gait, optional
-        Order of the steps; the robot's own where left out.
+        Order of the steps; by default the robot's own gait.
     start : RobotState or str
-        Standing, lying or folded.
+        Initial state: standing, lying or folded.
     angles : array, shape (legs, 3), optional
-        Joint angles as measured of a robot that lies, in whatever pose [rad]; left out, those that sitting down (and
-        folding) ends in.
+        Measured joint angles of a robot that lies, in any pose of its legs [rad]; left out, those in which sitting down
+        (and folding) ends.
     body_height, swing_height : float, optional
-        Of the stance that it starts in or stands up to [m]; the robot's own where left out.
+        Body height and swing height of the stance that it starts in or stands up to [m]; by default the robot's own.
     levelling : "level", "between", "follow" or None
-        The attitude to keep on sloping ground where an attitude is measured; None for no use of it.
+        Attitude to keep on sloping ground where the attitude is measured; None to ignore the measured attitude.
     adaptation : GroundAdaptation, optional
-        How far the walk may adapt to rough ground; its default where left out.
+        How far the walk may adapt to rough ground; by default ``GroundAdaptation()``.
     admittance : Admittance, optional
-        How the feet comply with the forces on them; left out, they don't.
+        How the feet comply with the forces on them; left out, they are stiff.
     guard : bool or GuardBounds
-        Whether a guard checks the angles, or the bounds that it keeps.
+        Whether a guard checks the angles, with the robot's default bounds; or the bounds that it enforces.
 
     Raises
     ------
     InputError
         If an argument is not finite or out of its range, or the robot is a batch.
     UnreachableError
-        If the robot can't stand or lie so.
+        If the robot can't stand or lie with these heights.
     """
 
     def __init__(  # noqa: PLR0913 - all that a robot is controlled with, all of it optional
@@ -94,13 +94,13 @@ class RobotController:
         require_robot(robot)
         self.robot = robot
         self.body_height, self.swing_height = body_height, swing_height
-        # Of a walk on all legs, and of the present one.
+        # The gait of walks on all legs, and that of the present walk, which may lack legs.
         self._gait = self._shown_gait = Gait.named(robot.gait.name, legs=robot.legs) if gait is None else gait
         self.compliant = admittance is not None
         heights: dict[str, Any] = {"body_height": body_height, "swing_height": swing_height}
         self._options = heights | {"levelling": levelling, "adaptation": adaptation, "admittance": admittance}
         self.leg_failures = LegFailures(robot, **self._options)
-        # The last command, and with everything that holds: commands mostly stay the same object for many ticks.
+        # The last command as given, and merged: mostly the same object is given for many ticks, and not merged again.
         self._given = self._command = Command()
         # Pose of the activity's ground frame in G; None where they are the same.
         self._base: Pose | None = None
@@ -119,7 +119,7 @@ class RobotController:
         self._rejected: Limitation | None = None
         if not isinstance(guard, GuardBounds | bool | np.bool):
             raise InputError(f"guard is {guard!r}; it must be True, False or GuardBounds")
-        # Where a servo's speed is unknown, walk controller and guard have to assume the same.
+        # Where a servo's speed is unknown, walk controller and guard have to assume the same value.
         speed, acceleration = walking.controller.joint_speed, walking.controller.joint_acceleration
         default = GuardBounds.of(robot, speed=speed, acceleration=acceleration)
         bounds = guard if isinstance(guard, GuardBounds) else default
@@ -132,7 +132,7 @@ class RobotController:
 
     @property
     def state(self) -> RobotState:
-        """The state now."""
+        """The present state."""
         return self.output.state
 
     def step(
@@ -143,11 +143,11 @@ class RobotController:
         Parameters
         ----------
         command : Command or (vx, vy, wz)
-            What is asked for; what is None in it stays as it is, a twist alone leaves everything else.
+            The command; what is None in it stays as it is. A twist alone changes nothing else.
         dt : float
-            The time since the last tick [s].
+            Time since the last tick [s].
         readings : SensorReadings, optional
-            What is measured.
+            The sensor readings.
 
         Raises
         ------
@@ -169,7 +169,7 @@ class RobotController:
         return self.output
 
     def _advance(self, command: Command, dt: float, readings: SensorReadings | None) -> None:
-        """Advance what the robot does, and begin or end changes of state."""
+        """Advance the activity by one tick, and begin or end changes of state."""
         self._begin_change(command)
         before, activity = self._now.angles, self._activity
         activity.step(command if self._goal.upright else stopped(command, self.robot.legs), dt, readings)
@@ -191,7 +191,7 @@ class RobotController:
         return still and float(np.abs(self._rates).max()) < (_AT_REST_DAMAGED if self.leg_failures.failed else _AT_REST)
 
     def _begin_change(self, command: Command) -> None:
-        """Begin the next change on the way to the state that is wanted, once the robot is at rest."""
+        """Begin the next change towards the wanted state once at rest; reverse one under way if it leads elsewhere."""
         goal = self._goal if command.state is None else requested_state(command.state)
         goal = RobotState.LYING if self.leg_failures.sits and goal is RobotState.STANDING else goal
         if goal is not self._goal:
@@ -217,7 +217,7 @@ class RobotController:
         self._base = ground_frame(now.body) @ ground_frame(sequence.stages[0].start).inverse()
 
     def _next_change(self) -> RobotState | None:
-        """Return the next change on the way to the state that is wanted; None where there is none that is possible."""
+        """Return the next change towards the wanted state; None where that is reached, or a change was not possible."""
         state = RobotState.STANDING if self._now.state.upright else self._now.state
         return None if self._rejected is not None else next_state(state, self._goal)
 
@@ -229,7 +229,7 @@ class RobotController:
         return sit_down(self.robot, angles, loaded=self._activity.bears if type(self._activity) is Walking else None)
 
     def _end_change(self, playing: Playing) -> None:
-        """Go over to what follows a motion sequence."""
+        """Switch to the activity that follows a motion sequence."""
         end = playing.sequence.at(playing.sequence.duration)
         if playing.returning:
             self._activity, self._base = playing.before, playing.base
@@ -243,7 +243,7 @@ class RobotController:
         self._now = self._now._replace(state=after.state, activity=after.activity, belly=after.belly)
 
     def _own_limitations(self) -> Iterator[Limitation]:
-        """Yield what of the command does not fit the state."""
+        """Yield why the robot sits down or can't change its state, and what of the command the state does not allow."""
         yield from self.leg_failures.limitations
         if self._rejected is not None:
             yield self._rejected

@@ -1,4 +1,4 @@
-"""The states of a robot, and which of them may follow each other."""
+"""The states of a robot, and which states may follow each state."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ class RobotState(StrEnum):
 
     @property
     def end(self) -> RobotState:
-        """The state in which rising, sitting down or folding ends; any other lasts."""
+        """The state in which rising, sitting down or folding ends; any other state is its own end."""
         return _ENDS.get(self, self)
 
     @property
@@ -57,7 +57,7 @@ TRANSITIONS: Mapping[RobotState, frozenset[RobotState]] = MappingProxyType(
 REQUESTABLE = (RobotState.STANDING, RobotState.LYING, RobotState.FOLDED)
 """The states that a command may ask for; walking follows from a twist."""
 
-# The first step from one requestable state towards another.
+# The change to begin with, by the present state and the wanted one.
 _STEPS = {
     (RobotState.STANDING, RobotState.LYING): RobotState.SITTING,
     (RobotState.STANDING, RobotState.FOLDED): RobotState.SITTING,
@@ -65,7 +65,7 @@ _STEPS = {
     (RobotState.LYING, RobotState.FOLDED): RobotState.FOLDING,
     (RobotState.FOLDED, RobotState.STANDING): RobotState.RISING,
 }
-# The state that each step ends in.
+# The state in which each change ends.
 _ENDS = {
     RobotState.RISING: RobotState.STANDING,
     RobotState.SITTING: RobotState.LYING,
@@ -84,7 +84,7 @@ def requested_state(value: RobotState | str) -> RobotState:
     Raises
     ------
     InputError
-        If it is another.
+        If it is any other value.
     """
     if value not in [*REQUESTABLE, *map(str, REQUESTABLE)]:
         known = ", ".join(f"'{state}'" for state in REQUESTABLE)
@@ -93,13 +93,13 @@ def requested_state(value: RobotState | str) -> RobotState:
 
 
 def next_state(state: RobotState, goal: RobotState) -> RobotState | None:
-    """Return the next state on the way to a goal; None where the goal is reached.
+    """Return the next state on the way to a goal: the change to begin with; None where the goal is reached.
 
-    A robot that lies already counts as lying when it is folded: folded legs are unfolded by standing up only.
+    A folded robot counts as lying already: its legs are unfolded only by standing up.
 
     Parameters
     ----------
     state, goal : RobotState, RobotState
-        The state now: standing, lying or folded; one of `REQUESTABLE`.
+        The present state and the wanted one, each one of `REQUESTABLE`.
     """
     return _STEPS.get((state, goal))

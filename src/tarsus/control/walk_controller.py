@@ -38,7 +38,7 @@ if TYPE_CHECKING:
 
 __all__ = ["WalkController"]
 
-# Longest part of a tick that is walked [s]: a late tick must not become a jump.
+# Longest part of a tick that is walked [s], so that the joints don't jump after a late tick.
 _LONGEST_TICK = 0.05
 _JOINTS = Cause("joint speed and acceleration")
 
@@ -52,31 +52,33 @@ class WalkController:
     robot : Robot
         A single robot.
     gait : Gait, optional
-        Order of the steps; the robot's own where left out.
+        Order of the steps; by default the robot's own gait.
     body_height, swing_height : float, optional
-        Height of the body's origin over the ground, and of a swinging foot [m]; the robot's own where left out.
+        Height of the body's origin over the ground, and of a swinging foot over its foothold [m]; by default the
+        robot's own.
     stance_width : float
-        Distance that the feet rest farther out than by default [m].
+        How much farther from its coxa axis each foot rests than by default [m].
     cycle_time : float, optional
         Duration of a cycle [s]; left out, the one with the highest top speed.
     joint_speed, joint_acceleration : float, optional
-        Greatest of every joint [rad/s], [rad/s^2]; left out, each servo's no-load speed, reached in 0.05 s.
+        Greatest speed [rad/s] and acceleration [rad/s^2] of every joint; left out, each servo's no-load speed, reached
+        in 0.05 s.
     foot_distance : float, optional
         Least distance between two feet [m]; two foot radii and 10 mm where left out.
     levelling : "level", "between", "follow" or None
-        The attitude to keep on sloping ground where an attitude is measured: level, along the slope, or in the middle;
-        None for no use of the measured attitude.
+        Attitude to keep on sloping ground where the attitude is measured: level, halfway between level and the slope,
+        or along the slope; None to ignore the measured attitude.
     adaptation : GroundAdaptation, optional
-        How far the walk may adapt to rough ground; its default where left out.
+        How far the walk may adapt to rough ground; by default ``GroundAdaptation()``.
     admittance : Admittance, optional
-        How the feet yield to the forces on them; left out, they don't.
+        How the feet comply with the forces on them; left out, they are stiff.
 
     Attributes
     ----------
     robot : Robot
         The robot.
     joint_speed, joint_acceleration : array, shape (legs, 3)
-        Greatest of each joint [rad/s], [rad/s^2].
+        Greatest speed [rad/s] and acceleration [rad/s^2] of each joint.
     time : float
         Time since the start [s].
 
@@ -86,7 +88,7 @@ class WalkController:
         If an argument is not finite or out of its range, the robot is a batch, or the gait is for another number of
         legs.
     UnreachableError
-        If the robot can't stand and step so.
+        If the robot can't stand and step in this stance.
     """
 
     def __init__(  # noqa: PLR0913 - all that a walk is set up with, all of it optional
@@ -132,11 +134,11 @@ class WalkController:
         Parameters
         ----------
         command : Command or (vx, vy, wz)
-            What is commanded: a twist [m/s, m/s, rad/s] leaves everything else as it is.
+            The command; a twist alone [m/s, m/s, rad/s] changes nothing else.
         dt : float
-            Time since the last tick [s]. Of a longer tick, 0.05 s are walked.
+            Time since the last tick [s]. Of a tick longer than 0.05 s, only 0.05 s are walked.
         readings : SensorReadings, optional
-            What is measured. Implausible readings are rejected and named in `limitations`.
+            The sensor readings. Implausible ones are rejected and named in `limitations`.
 
         Returns
         -------
@@ -162,12 +164,12 @@ class WalkController:
         return self.angles
 
     def joints_held(self) -> None:
-        """Take note that the joints have been held where they are: the walk goes on from rest."""
+        """Note that the joints have been held in place: the walk continues from rest."""
         self._walk.time_scaling.joints_held()
 
     @property
     def walk_state(self) -> WalkState:
-        """What the controller does now."""
+        """The present state of the walk."""
         return self._tick.walk_state
 
     @property
@@ -196,7 +198,7 @@ class WalkController:
 
     @property
     def place(self) -> tuple[float, float, float]:
-        """Where the heading frame is in G: x, y [m], yaw [rad]."""
+        """Position and yaw of the heading frame in G: x, y [m], yaw [rad]."""
         state = self._tick.gait
         return state.origin.real, state.origin.imag, state.yaw
 
@@ -207,29 +209,29 @@ class WalkController:
 
     @property
     def feet(self) -> Float[np.ndarray, "legs 3"]:
-        """The feet in G, the centres of their balls: array, shape (legs, 3) [m]."""
+        """The feet in G, which are the centres of their balls: array, shape (legs, 3) [m]."""
         return self._walk.solver.feet(self._tick.gait, self.angles)
 
     @property
     def contacts(self) -> Bool[np.ndarray, "legs"]:
-        """Which feet are on the ground: array of bool, shape (legs,)."""
+        """Which feet of the legs in the gait are on the ground: array of bool, shape (legs,)."""
         down = self._tick.gait.down.copy()
         down[self._walk.foot_targets.legs] = False
         return down
 
     @property
     def bears(self) -> Bool[np.ndarray, "legs"]:
-        """Which of the feet that should be on the ground bear load, as far as is felt: array of bool, shape (legs,)."""
+        """Which of the feet in `contacts` bear load, as far as is felt: array of bool, shape (legs,)."""
         return self.contacts & [self._walk.ground.contacts.supports(leg) for leg in range(self.robot.legs)]
 
     @property
     def feels_ground(self) -> bool:
-        """Whether readings have told anything of the ground: the feet follow it from then on."""
+        """Whether any readings so far have told of the ground: from then on, the feet follow what is felt of it."""
         return bool(self._tick.gait.felt)
 
     @property
     def measured(self) -> ValidReadings:
-        """Those of the last readings that passed validation."""
+        """The part of the last readings that passed validation."""
         return self._walk.ground.readings.valid
 
     @property

@@ -1,4 +1,4 @@
-"""The states of walking and the transitions between them; what passes from stage to stage of a tick."""
+"""The states of walking, the transitions between them, and the state that the stages of a tick pass on."""
 
 from __future__ import annotations
 
@@ -34,18 +34,18 @@ class WalkState(StrEnum):
 def next_walk_state(
     state: WalkState, *, follows_twist: bool, at_rest: bool, changes_gait: bool = False, searches: bool = False
 ) -> WalkState:
-    """Return the state after the present one; only a robot that stops comes to stand.
+    """Return the state that follows the present one; STANDING is entered only from STOPPING.
 
     Parameters
     ----------
     state : WalkState
-        The present state; a standing robot is asked only once it starts to step.
+        The present state. A standing robot that starts to step is in STOPPING here.
     follows_twist : bool
         Whether the twist to follow is not zero.
     at_rest : bool
         Whether all feet are down at their rest footholds and nothing moves.
     changes_gait, searches : bool, bool
-        Whether all feet touch down for another gait; whether the walk waits until its feet hold the robot.
+        Whether all feet touch down and stay for another gait; whether the walk waits until its feet hold the robot.
     """
     if searches:
         return WalkState.SEARCHING
@@ -53,21 +53,21 @@ def next_walk_state(
         return WalkState.CHANGING_GAIT
     if follows_twist:
         return WalkState.WALKING
-    # A walk that has just ended stops first, even if its feet are at rest already.
+    # A walk that has just ended passes through STOPPING, even if its feet are at rest already.
     return WalkState.STANDING if at_rest and state is WalkState.STOPPING else WalkState.STOPPING
 
 
 class TickState(NamedTuple):
-    """Gait state, twist and walk state; what else lasts from tick to tick is in the `WalkComponents`.
+    """The values that the stages of a tick pass on; all else that lasts from tick to tick is in the `WalkComponents`.
 
     Attributes
     ----------
     gait : GaitState
         Body and feet.
     twist : array, shape (3,)
-        The twist to follow: forward, left [m/s], turning [rad/s].
+        Twist to follow: forward, left [m/s], turning [rad/s].
     walk_state : WalkState
-        What the controller does.
+        The state of the walk.
     limitations : tuple of Limitation
         Why the commanded twist is not followed in full.
     """
