@@ -1,1 +1,1 @@
-"""Compliant statics: a robot whose joints are springs stands on feet with friction, and its past counts."""
+"""Compliant statics: a robot with elastic joints stands on feet with friction, and its history matters."""

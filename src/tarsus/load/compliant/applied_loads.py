@@ -22,14 +22,14 @@ __all__ = ["AppliedLoads", "applied_loads"]
 
 
 class AppliedLoads(NamedTuple):
-    """Loads at samples of a motion; G is the frame of all of them.
+    """Loads at samples of a motion, all in G.
 
     Attributes
     ----------
     points : array, shape (k, legs, 3, 3)
         Forces on femur axis, knee and foot of each leg [N].
     force, moment : array, shape (k, 3)
-        Force on the body and its moment about B's origin [N, N m].
+        Force on the body, coxa axes included, and its moment about B's origin [N, N m].
     rotors : array, shape (k, legs, 3)
         Torques that accelerate the rotors of the servos [N m].
     """
@@ -50,7 +50,7 @@ def applied_loads(
     inertial: bool,
     rotor_inertia: Float[np.ndarray, "legs 3"],
 ) -> AppliedLoads:
-    """Return the loads at samples of a motion, in its commanded poses: compliance changes them little.
+    """Return the loads at samples of a motion, for its commanded poses, as compliance changes the loads little.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""What is known and demanded at a sample, and what is found there."""
+"""Values of the search for an equilibrium: the last one, the demand, a configuration, and its balance of forces."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ __all__ = ["Balance", "Configuration", "Demand", "Past"]
 
 
 class Past(NamedTuple):
-    """What counts of the last equilibrium: pose, angles, contact points, friction forces, feet that held, vibration."""
+    """State after the last equilibrium: pose, angles, contact points, friction forces, feet that held, vibration."""
 
     rotation: Float[np.ndarray, "3 3"]
     position: Float[np.ndarray, "3"]
@@ -27,20 +27,20 @@ class Past(NamedTuple):
 
 
 class Demand(NamedTuple):
-    """What is demanded at a sample.
+    """Commands and loads at a sample, with the terms of the inertial forces.
 
     Attributes
     ----------
     targets : array, shape (legs, 3)
-        Angles that the servos aim at [rad].
+        Angles that the servos aim at, `JointSprings.targets` [rad].
     forces : array, shape (legs, 12)
-        Forces of `AppliedLoads.points`, one after the other, and three zeros [N].
+        For each leg the forces of `AppliedLoads.points`, one after the other, then three zeros [N].
     loads : array, shape (6 + 3 legs,)
-        Force and moment on the body, and torques on the joints but for those of `forces` [N, N m].
+        Force and moment on the body, and torques on the joints other than those due to `forces` [N, N m].
     angles, rotation, position : array
         Commanded joint angles and pose of B in G.
     inertia : array, shape (6, 6)
-        `rigid_inertia` along G's axes.
+        `rigid_inertia`, rotated into G's axes.
     step : float
         Time since the last sample [s].
     ahead : array, shape (6 + 3 legs,)
@@ -62,18 +62,18 @@ class Demand(NamedTuple):
 
 
 class Configuration(NamedTuple):
-    """A pose of B in G with joint angles, and what the contacts would do there.
+    """A pose of B in G with joint angles, and the contacts there, as if no foot slid.
 
     Attributes
     ----------
     offset : array, shape (6 + 3 legs,)
-        From what is commanded, as in `Vibration`.
+        Offset of body and joints from their commands, as in `Vibration`.
     rotation, position : array
         Pose of B in G.
     angles : array, shape (legs, 3)
         Joint angles [rad].
     turned : array, shape (legs, 3)
-        Their changes since the last equilibrium [rad].
+        Changes of the joint angles since the last equilibrium [rad].
     points : array, shape (legs, 10, 12)
         `LegDerivatives.at`, with the contact points in place of the feet.
     bottoms : array, shape (legs, 3)
@@ -83,7 +83,7 @@ class Configuration(NamedTuple):
     displacement : array, shape (legs, 2)
         Displacements of the contact points since the last equilibrium [m].
     trial : array, shape (legs, 2)
-        Tangential forces without sliding [N].
+        Tangential forces that the feet would have if they did not slide [N].
     """
 
     offset: Float[np.ndarray, "unknowns"]
@@ -106,17 +106,18 @@ class Balance(NamedTuple):
     contact : array, shape (legs, 3)
         Contact forces in G [N].
     fraction : array, shape (legs,)
-        Tangential force over the one without sliding; below 1 for a foot that slides.
+        Tangential force over that of `Configuration.trial`; below 1 for a foot that slides.
     forces : array, shape (legs, 12)
-        `Demand.forces` with the contact forces on the feet, and the moments of these per radius of the foot [N].
+        `Demand.forces` plus the contact forces on the feet; in place of the zeros, the moments of the contact forces
+        about the centre of the foot ball, over its radius [N].
     generalised : array, shape (legs, 9)
-        Work of `forces` by the first and second derivatives of `LegDerivatives.at`.
+        Scalar products of `forces` with the three first and the six second derivatives of `LegDerivatives.at`.
     torques, slopes : array, shape (legs, 3)
-        `JointSprings.torque`.
+        Torques of the joint springs and their slopes, as `JointSprings.torque` returns them.
     moments : array, shape (3, 3)
-        Sum of the products of point and force, whose antisymmetric part is the moment [N m].
+        Sum of the outer products of points and forces; its antisymmetric part gives the moment [N m].
     residual : array, shape (6 + 3 legs,)
-        Force and moment on the body, torques of the joints [N, N m].
+        Residual of the equilibrium: force and moment on the body, torques of the joints [N, N m].
     size : float
         Size of the residual [N m].
     """

@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 __all__ = ["RATE", "compliant_loads"]
 
 RATE = 50.0
-"""Samples per second that are solved; at four times as many, torques change by 1 %, those of coxae by 6 % [1/s]."""
+"""Samples solved per second [1/s]; four times as many change the torques by 1 %, those of the coxae by 6 %."""
 
 
 def compliant_loads(
@@ -47,10 +47,10 @@ def compliant_loads(
 ) -> CompliantLoads:
     """Return the loads of a robot whose joints give way like springs and whose feet hold by friction.
 
-    Position-controlled legs press against each other through the feet. How much follows from the stiffness of the
-    joints, where each foot touched down, how it rolled and where it slipped. The loads are those of the equilibria
-    along the motion, one after the other. Soft joints also let the body swing when feet take over its weight; its
-    inertia is included.
+    Position-controlled legs press against each other through the feet. How hard they press depends on the stiffness of
+    the joints, and on where each foot touched down, how it rolled and where it slipped. The loads are those of the
+    equilibria along the motion, one after the other. Soft joints also let the body swing when feet take over its
+    weight; its inertia is included.
 
     Parameters
     ----------
@@ -67,12 +67,12 @@ def compliant_loads(
     gravity : sequence of float
         Gravity in G [m/s^2]; tilted, it represents a slope.
     inertial : bool
-        Whether inertial forces are included: those of the commanded motion, and those of the body and the rotors as
-        they move off it.
+        Whether inertial forces are included: those of the commanded motion, and those of the body and the rotors where
+        they deviate from it.
     supply : float, optional
         Supply voltage of the servos [V]. Default: that of their ratings.
     rate : float
-        Samples per second to solve; those of the motion between them are interpolated [1/s].
+        Samples per second to solve [1/s]; values at the motion's samples between them are interpolated.
 
     Raises
     ------

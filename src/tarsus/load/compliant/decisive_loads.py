@@ -1,4 +1,4 @@
-"""Loads to size servos by: of vertical forces and compliant statics the higher, joint by joint."""
+"""Loads by which servos are sized: for each joint the higher of those of vertical forces and compliant statics."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ _FRICTION = "loads of each joint: the higher of vertical forces and compliant st
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class _DecisiveLoads(JointLoads):
-    """The torques of the case with the higher peak, joint by joint; the other case may heat a servo more."""
+    """For each joint the torques of the case with the higher peak; `rms`, which heats servos, is the higher of both."""
 
     vertical: JointLoads
     pressed: JointLoads
@@ -38,14 +38,15 @@ class _DecisiveLoads(JointLoads):
 def decisive_loads(loads: JointLoads, compliant: CompliantLoads | None) -> JointLoads:
     """Return for each joint the loads with the higher peak torque, those of vertical forces or of compliant statics.
 
-    The root mean square torque of a joint is the higher of both cases, whichever has the higher peak.
+    The root mean square torque of a joint is the higher of both cases, regardless of which has the higher peak. The
+    contact forces are those of compliant statics.
 
     Parameters
     ----------
     loads : JointLoads
         Loads from vertical forces.
     compliant : CompliantLoads or None
-        Compliant statics of the same motion; None if it is unknown: then the loads are returned as they are.
+        Compliant statics of the same motion; None if unknown: `loads` is then returned unchanged.
     """
     if compliant is None:
         return loads

@@ -7,8 +7,8 @@ the spring torques tau, all in G::
     forces   -(sum P + sum f + load on the body)                       = 0
     moments  -(sum p x P + sum c x f + moment of the load on the body) = 0   about B's origin
 
-What accelerates beyond the commanded motion adds its inertial forces (`tarsus.load.compliant.vibration`).
-`dc/dq` is that of the material at the contact point: ``axis x (c - joint)`` for each joint.
+Accelerations beyond those of the commanded motion add inertial forces (`tarsus.load.compliant.vibration`).
+`dc/dq` is the derivative of the material point of the foot at the contact: ``axis x (c - joint)`` for each joint.
 """
 
 from __future__ import annotations
@@ -33,18 +33,18 @@ __all__ = ["ROLL", "Compliant"]
 
 # A vector times this is its cross product with z.
 ROLL = np.array([[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 0.0]])
-# Contact forces f times this are forces on the feet, and f x z, their moments per radius of the foot.
+# Contact forces f times this are the forces f on the feet, and f x z, their moments over the radius of the foot.
 _SPREAD = np.hstack([np.zeros((3, 6)), np.eye(3), ROLL])
-# Weight of forces in the size of a residual, a lever arm of legs [m].
+# Lever arm by which the size of a residual weighs forces against moments, about that of a leg [m].
 _LEVER = 0.2
-# Keeps the body's equations regular where it is free to move [N/m, N m/rad].
+# Stiffness of the body that keeps its equations regular where it is free to move [N/m, N m/rad].
 _FLOOR = 1e-3
-# The places in a matrix of moments whose differences are the moment.
+# Flat indices into a 3 x 3 matrix of moments: elements at the first less those at the second are the moment.
 _LATER, _EARLIER = np.array([5, 6, 1]), np.array([7, 2, 3])
 
 
 class Compliant:
-    """A robot on springs: its configurations and their balance.
+    """A robot with elastic joints: its configurations and their balance of forces.
 
     Parameters
     ----------
@@ -72,7 +72,7 @@ class Compliant:
         self.every, self._radii = np.ones(robot.legs), self.radius[:, None]
         self._rotors = np.diag(np.append(np.zeros(6), springs.rotor_inertia))
         self._floor = np.diag(np.append(np.full(6, _FLOOR), np.zeros(3 * robot.legs)))
-        # Forces among the vectors of `Balance.forces`.
+        # 1 for the forces among the vectors of `Balance.forces`, 0 for the moments.
         self._forces = np.tile([1.0, 1.0, 1.0, 0.0], robot.legs)
 
     def bottoms(
@@ -84,7 +84,7 @@ class Compliant:
         return bottoms
 
     def resistance(self, inertia: Float[np.ndarray, "6 6"], gain: float) -> Float[np.ndarray, "unknowns unknowns"]:
-        """Return the inertial force by the offset from where nothing accelerates, and a trace of stiffness of the body.
+        """Return the inertial force per offset beyond `Vibration.ahead`, plus the small stiffness that holds the body.
 
         Parameters
         ----------
@@ -98,16 +98,16 @@ class Compliant:
         return resistance
 
     def configuration(self, offset: Float[np.ndarray, "unknowns"], past: Past, demand: Demand) -> Configuration:
-        """Return a configuration, and what the contacts would do there.
+        """Return the configuration at an offset, with its contacts as if no foot slid.
 
         Parameters
         ----------
         offset : array, shape (6 + 3 legs,)
-            From what is commanded, as in `Vibration`.
+            Offset of body and joints from their commands, as in `Vibration`.
         past : Past
             The last equilibrium.
         demand : Demand
-            What is demanded.
+            Commands and loads.
         """
         rotation, position = rotated(demand.rotation, offset[3:6]), demand.position + offset[:3]
         angles = demand.angles + offset[6:].reshape(-1, 3)
@@ -132,9 +132,9 @@ class Compliant:
         at : Configuration
             The configuration.
         demand : Demand
-            Commanded angles and loads.
+            Commands and loads.
         limit : array, shape (legs,), optional
-            Frozen limits of friction [N]; left out, friction times normal force.
+            Limits of the tangential forces [N]. Default: friction times normal force.
         """
         if limit is None:
             limit = self.contact.friction * at.normal

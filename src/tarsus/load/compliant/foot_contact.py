@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 __all__ = ["POINT_FOOT", "FootContact", "normal_force"]
 
 POINT_FOOT = 0.001
-"""Radius of a foot whose radius is 0 in the robot's file, as in the simulation [m]."""
+"""Radius that stands for a foot radius of 0 in the robot's file, as in the simulation [m]."""
 
 
 @represented()
@@ -34,7 +34,7 @@ class FootContact:
     friction : float
         Coefficient of friction.
     normal_stiffness, tangential_stiffness : float
-        Of a foot on the ground [N/m].
+        Stiffness of the contact of a foot with the ground [N/m].
     creep_time : float
         Viscosity of friction over the normal stiffness [s]: a foot under a tangential load f creeps at the speed
         ``f / (normal_stiffness creep_time)``. Infinite for dry friction, without creep.

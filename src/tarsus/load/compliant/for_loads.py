@@ -1,4 +1,4 @@
-"""Compliant statics for joint loads that are known already, where the servos are known."""
+"""Compliant statics under the conditions of given joint loads, where the servos are known."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ __all__ = ["compliant_or_missing"]
 
 
 def compliant_or_missing(loads: JointLoads) -> tuple[CompliantLoads | None, str]:
-    """Return compliant statics under the conditions of joint loads, or None and what is missing for it.
+    """Return compliant statics under the conditions of joint loads, or None and a message on what is missing.
 
     Parameters
     ----------

@@ -1,7 +1,7 @@
 """Coulomb friction of elastic feet that may creep.
 
 The tangential force of a foot is that of a spring between its contact point and the place on the ground where it holds.
-Over a step in which the contact point is displaced by d, the force that was f becomes at first
+Over a step in which the contact point is displaced by d, the force f becomes, before any sliding,
 
     f' = (f - stiffness d) / (1 + stiffness step / viscosity)
 
@@ -23,14 +23,14 @@ if TYPE_CHECKING:
 __all__ = ["contact_stiffness", "friction_fraction"]
 
 _TINY = 1e-12
-# Fraction of the stiffness that stays along the direction of sliding, so that no direction is free.
+# Fraction of the stiffness that is kept along the direction of sliding, so that no direction is without any.
 _SLIDING_STIFFNESS = 1e-3
 
 
 def friction_fraction(
     trial: Float[np.ndarray, "legs 2"], limit: Float[np.ndarray, "legs"]
 ) -> Float[np.ndarray, "legs"]:
-    """Return the tangential forces over those without sliding, ``(legs,)``; below 1 for feet that slide.
+    """Return the ratio of the tangential forces to those without sliding, ``(legs,)``; below 1 for feet that slide.
 
     Parameters
     ----------
@@ -50,7 +50,7 @@ def contact_stiffness(
     normal: Float[np.ndarray, "legs"],
     friction: float,
 ) -> Float[np.ndarray, "legs 3 3"]:
-    """Return how the contact forces fall with the displacement of the contact points, ``(legs, 3, 3)`` [N/m].
+    """Return the decrease of the contact forces per displacement of the contact points, ``(legs, 3, 3)`` [N/m].
 
     Parameters
     ----------
@@ -63,8 +63,8 @@ def contact_stiffness(
     normal : array, shape (legs,)
         Normal stiffness; 0 for feet in the air [N/m].
     friction : float
-        Coefficient by which limits follow the normal forces. With 0 they are frozen (Tresca friction), and the matrix
-        is symmetric.
+        Coefficient with which the limits of friction follow the normal forces. With 0 the limits are frozen (Tresca
+        friction), and the matrix is symmetric.
     """
     legs = []
     # For so few numbers plain floats are faster than arrays.

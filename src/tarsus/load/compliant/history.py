@@ -19,10 +19,10 @@ if TYPE_CHECKING:
 __all__ = ["TOLERANCE", "History", "equilibria"]
 
 TOLERANCE = 3e-4
-"""Greatest residual of an equilibrium: moments over weight times 1 m, forces over weight times 5. Over 8 walks torques
-then differ from those at 1e-9 by 0.2 mN m (RMS, median of the walks) and their peaks by 2 mN m at most."""
+"""Greatest residual of an equilibrium: moments over the weight times 1 m, forces over 5 times the weight. Torques of 8
+walks then differ from those at 1e-9 by 0.2 mN m (RMS, median of the walks), and their peaks by 2 mN m at most."""
 
-# Feet that share the weight when the robot is set down.
+# Number of feet that are taken to share the weight when the robot is set down.
 _FIRST_FEET = 3
 _TINY = 1e-12
 
@@ -33,7 +33,7 @@ class History(NamedTuple):
     Attributes
     ----------
     torques, forces, angles : array, shape (k, legs, 3)
-        Joint torques [N m], ground on feet in G [N], achieved joint angles [rad].
+        Joint torques [N m], forces of the ground on the feet in G [N], achieved joint angles [rad].
     rotation, position : array, shapes (k, 3, 3) and (k, 3)
         Achieved poses of B in G.
     slip : array, shape (k, legs)
@@ -64,9 +64,9 @@ def equilibria(
 ) -> History:
     """Return the equilibria at some samples of a motion.
 
-    The robot is set down in the first commanded pose, with its lowest foot on the ground. Each search starts from
-    deviations from the commands that continue those of the last two equilibria. Where none is found, the next starts
-    from the commanded pose.
+    The robot is set down in the first commanded pose, with its lowest foot on the ground. Each search starts from an
+    offset from the commands that is extrapolated from the last two equilibria. Where no equilibrium is found, the robot
+    is set down anew in the next commanded pose.
 
     Parameters
     ----------
@@ -123,7 +123,7 @@ def _demands(
     loads: AppliedLoads,
     samples: Int[np.ndarray, "k"],
 ) -> list[Demand]:
-    """Return what is demanded at each sample, without what follows from the past."""
+    """Return the demand at each sample, without the inertial terms that follow from the last equilibrium."""
     count, legs = len(samples), compliant.legs
     forces, turn = np.zeros((count, legs, 12)), np.zeros((count, 6, 6))
     forces[:, :, :9] = loads.points.reshape(count, legs, 9)
@@ -159,11 +159,11 @@ def _reach(
 def _touched_down(
     compliant: Compliant, predicted: Configuration, past: Past, step: float
 ) -> tuple[Past, Configuration]:
-    """Return the last equilibrium with the feet in the air where they will first meet the ground, and the prediction.
+    """Return the last equilibrium, with the feet in the air moved to where they touch down, and the prediction.
 
-    A foot that was in the air would else be dragged over the ground all the way since the last sample. When it meets
-    the ground follows from its heights then and in the configuration where the search starts, which continues its
-    motion as if there were no ground.
+    Otherwise a foot that was in the air would be dragged over the ground along its whole way since the last sample. The
+    time of its touchdown follows from its height at the last sample and that in the configuration where the search
+    starts, which continues its motion as if there were no ground.
     """
     before, after = past.bottoms[:, 2], predicted.bottoms[:, 2]
     if max(before.tolist()) <= 0:
@@ -186,7 +186,7 @@ def _past(compliant: Compliant, found: Equilibrium, past: Past, demand: Demand) 
 
 
 def _set_down(compliant: Compliant, demand: Demand, weight: float) -> tuple[Float[np.ndarray, "unknowns"], Past]:
-    """Return the offset that has the lowest foot on the ground, pressed in as under its part of the weight."""
+    """Return an offset that presses the lowest foot into the ground by its part of the weight, and the past there."""
     legs = compliant.legs
     bottoms = compliant.bottoms(demand.rotation, demand.position, demand.angles)
     start = np.zeros(6 + 3 * legs)

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 __all__ = ["JointSprings"]
 
-# Fraction of the stiffness inside the play, and of a saturated servo: keeps the equations regular.
+# Fraction of the stiffness that is left within the play and in a saturated servo, to keep the equations regular.
 _SOFT = 1e-3
 
 
@@ -137,7 +137,7 @@ class JointSprings:
         )
 
     def targets(self, angles: Float[np.ndarray, "n legs 3"]) -> Float[np.ndarray, "n legs 3"]:
-        """Return the angles that servos aim at, which follow the commands as far as these leave the dead band.
+        """Return the angles that servos aim at, which follow the commands only as far as these leave the dead band.
 
         Parameters
         ----------
@@ -147,7 +147,7 @@ class JointSprings:
         lowest, targets = angles - self.dead_band, angles + self.dead_band
         target = angles[0]
         for low, high in zip(lowest, targets, strict=True):
-            # What is the upper bound becomes the target.
+            # The row of upper bounds is overwritten with the targets.
             target = np.minimum(np.maximum(target, low), high, out=high)
         return np.asarray(targets)
 
@@ -158,13 +158,13 @@ class JointSprings:
 
     @cached_property
     def _parts(self) -> tuple[Float[np.ndarray, "legs 3"], ...]:
-        """What play and saturation take of the stiffness, stall torques, the least errors in play, zeros."""
+        """Stiffness lost in play or saturation, stall torques, lower ends of the play, zeros."""
         return (1.0 - _SOFT) * self.stiffness, self.stall_torque, -self.play, np.zeros_like(self.play)
 
     def torque(
         self, error: Float[np.ndarray, "legs 3"], turned: Float[np.ndarray, "legs 3"], step: float
     ) -> tuple[Float[np.ndarray, "legs 3"], Float[np.ndarray, "legs 3"]]:
-        """Return the torques at position errors, and how they fall with the angles.
+        """Return the torques at position errors, and the slopes by which they fall as the angles grow.
 
         Parameters
         ----------
@@ -178,7 +178,7 @@ class JointSprings:
         Returns
         -------
         torque : array, shape (legs, 3)
-            Torques [N m]; beyond the torque-speed line by a thousandth of what the spring would give.
+            Torques [N m]; beyond the torque-speed line, they grow with a thousandth of the spring's stiffness.
         slope : array, shape (legs, 3)
             Their derivatives by the angles, with the opposite sign [N m/rad].
         """

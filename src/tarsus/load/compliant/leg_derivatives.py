@@ -18,14 +18,14 @@ if TYPE_CHECKING:
 
 __all__ = ["LegDerivatives"]
 
-# How the cosine and the sine of an angle change with it.
+# Derivatives of the cosine and the sine of an angle, in terms of these two.
 _ROTATE = np.array([[0.0, -1.0], [1.0, 0.0]])
-# Heading and slopes are angles times this.
+# Heading, less the mount yaw, and slopes of femur and tibia are joint angles times this.
 _SUMS = np.array([[1.0, 0.0, 0.0], [0.0, 1.0, 1.0], [0.0, 0.0, 1.0]])
 
 
 class LegDerivatives:
-    """Femur axis, knee and foot of each leg from B's origin, and their derivatives.
+    """Positions of femur axis, knee and foot of each leg from B's origin, and their derivatives by the joint angles.
 
     Parameters
     ----------
@@ -69,9 +69,9 @@ class LegDerivatives:
         Returns
         -------
         array, shape (legs, 10, 12)
-            In the second axis the values, their derivatives by coxa (c), femur (f) and tibia (t), and the second ones
-            by cc, cf, ct, ff, ft and tt. In the last the coordinates of femur axis, knee and foot from B's origin, one
-            after the other; then, for the first derivatives, the axis of the joint times the foot's radius [m].
+            Second axis: the values, their first derivatives by coxa (c), femur (f) and tibia (t), and their second ones
+            by cc, cf, ct, ff, ft and tt. Last axis: the coordinates of femur axis, knee and foot from B's origin, one
+            after the other; then, in the rows of the first derivatives, the joint axis times the foot's radius [m].
         """
         argument = angles @ _SUMS + self._zero
         np.cos(argument, out=self._cos)

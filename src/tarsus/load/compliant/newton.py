@@ -1,12 +1,14 @@
 """Solution of the equilibrium at one sample.
 
-Newton steps have the limits of friction follow the normal forces. Along the direction in which a foot slides there is
-hardly any stiffness, so that a step may reverse the direction, back and forth: such a foot holds in this step. In the
-first step, what stood on the ground in the last equilibrium stays there and holds if it held: a start that continues
-the motion lifts many feet that stay, and has others slide that hold. If a number of steps does not reach the
-equilibrium, the search begins again with steps that reduce the residual, and where one does not, with frozen limits
-(Tresca friction): then the equations are those of a potential, and a line search along the step finds where it is
-nearly lowest.
+In Newton steps, the limits of friction follow the normal forces. A sliding foot has hardly any stiffness along its
+direction of sliding, so steps may reverse this direction again and again; a foot whose sliding a step would reverse is
+made to hold in that step. The start of the search extrapolates the motion: it lifts many feet that in fact stay, and
+lets others slide that in fact hold. In the first step, feet that stood in the last equilibrium and are lifted at the
+start are therefore kept on the ground, and they and the feet that held do not slide.
+
+If a number of steps does not reach the equilibrium, the search begins again, and each Newton step must then reduce the
+residual. Where one does not, steps with frozen limits of friction (Tresca friction) follow. With these, the equations
+are those of a potential, and a line search along the step finds where it is nearly lowest.
 """
 
 from __future__ import annotations
@@ -27,15 +29,15 @@ __all__ = ["Equilibrium", "solve_equilibrium"]
 
 _MOST_STEPS = 40
 _MOST_TRIALS = 8
-# Residual over the last one up to which a step is taken as it is.
+# A Newton step is accepted where it reduces the residual to less than this fraction.
 _ENOUGH = 0.7
-# Slope of the potential at the end of a step over that at its start, up to which the step is taken.
+# A step length is accepted where the slope of the potential at its end is at most this fraction of that at its start.
 _FLAT = 0.5
-# Longest step [m, rad, rad].
+# Longest step: translation of the body, its rotation, joint angles [m, rad, rad].
 _LONGEST = 0.03, 0.2, 0.2
-# Newton steps before the search that reduces the residual.
+# Newton steps before the search begins again with steps that must reduce the residual.
 _DIRECT = 12
-# Steps with frozen limits before another is tried first.
+# Steps with frozen limits of friction before the next Newton step is tried.
 _FROZEN = 3
 
 
@@ -68,7 +70,7 @@ def solve_equilibrium(
     past : Past
         The last equilibrium.
     demand : Demand
-        Commanded angles and loads.
+        Commands and loads.
     tolerance : float
         Size of the residual that is small enough [N m].
     """
@@ -86,12 +88,12 @@ def solve_equilibrium(
 
 
 def _limit(compliant: Compliant, at: Configuration, held: Bool[np.ndarray, "legs"]) -> Float[np.ndarray, "legs"]:
-    """Return limits of friction with which some feet hold, ``(legs,)`` [N]."""
+    """Return limits of friction ``(legs,)`` [N], infinite for the feet that are made to hold."""
     return np.where(held, np.inf, compliant.contact.friction * at.normal)
 
 
 def _descent(compliant: Compliant, start: Equilibrium, past: Past, demand: Demand, tolerance: float) -> Equilibrium:
-    """Return the equilibrium by steps that reduce the residual, or the potential with frozen limits of friction."""
+    """Search by steps that reduce the residual, or that reduce the potential with frozen limits of friction."""
     at, balance = start
     frozen, steps = 0, 0
     while balance.size > tolerance and steps < _MOST_STEPS:
@@ -106,7 +108,7 @@ def _descent(compliant: Compliant, start: Equilibrium, past: Past, demand: Deman
         jacobian = contact_jacobian(compliant, at)
         step = newton_step(compliant, at, balance, jacobian, demand, frozen=True)
         if _slope(balance, step) >= 0:
-            # Joints in their play leave legs so soft that the loads on them tip the potential over.
+            # Legs with joints in their play are so soft that, under load, the step may not lower the potential.
             springs = compliant.springs
             loose = np.abs(demand.targets - at.angles) <= springs.play
             stiff = balance._replace(slopes=np.where(loose, springs.stiffness, balance.slopes))
@@ -118,7 +120,7 @@ def _descent(compliant: Compliant, start: Equilibrium, past: Past, demand: Deman
 
 
 def _newton(compliant: Compliant, at: Configuration, balance: Balance, past: Past, demand: Demand) -> Configuration:
-    """Return the configuration after a Newton step that is not too long, in which feet hold that it would reverse."""
+    """Return the configuration after a Newton step of limited length; feet whose sliding it would reverse hold."""
     jacobian = contact_jacobian(compliant, at)
     step = newton_step(compliant, at, balance, jacobian, demand, frozen=False)
     sliding = (balance.fraction < 1.0) & (at.normal > 0)
@@ -142,7 +144,7 @@ def _line_search(
     past: Past,
     demand: Demand,
 ) -> Configuration:
-    """Return where along a step the potential, with the limits of friction as they are, is nearly lowest."""
+    """Return where along a step the potential, with the limits of friction frozen, is nearly lowest."""
     limit = compliant.contact.friction * at.normal
     slope = _slope(balance, step)
     enough = _FLAT * abs(slope)

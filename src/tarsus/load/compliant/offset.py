@@ -1,7 +1,7 @@
-"""Offset of body and joints from what is commanded: translation, rotation vector and angles in a row.
+"""Offset of body and joints from their commands: translation, rotation vector and joint angles in one vector.
 
-Translation and rotation vector are those of the body in G, so that the achieved rotation is that by the vector after
-the commanded one.
+Translation and rotation vector are those of the body in G: the achieved rotation is the commanded one, followed by that
+of the rotation vector.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 __all__ = ["moved", "rotated", "turned"]
 
-# The places in a matrix whose differences are twice its rotation vector, if it is small.
+# Flat indices into a rotation matrix: elements at the second less those at the first are twice a small rotation vector.
 _LATER, _EARLIER = np.array([5, 6, 1]), np.array([7, 2, 3])
 
 
@@ -32,7 +32,7 @@ def moved(offset: Float[np.ndarray, "unknowns"], step: Float[np.ndarray, "unknow
     """
     after: np.ndarray = offset + step
     (x, y, z), (a, b, c) = offset[3:6].tolist(), step[3:6].tolist()
-    # The vector of two rotations, one after the other, to the first order of the second one.
+    # Rotation vector of two successive rotations, to first order in the second.
     after[3:6] += ((b * z - c * y) / 2, (c * x - a * z) / 2, (a * y - b * x) / 2)
     return after
 

@@ -1,4 +1,4 @@
-"""Newton steps of the equilibrium, by its tangent."""
+"""Newton steps towards the equilibrium, from the tangent of its equations."""
 
 from __future__ import annotations
 
@@ -21,13 +21,13 @@ _EPSILON[0, 1, 2] = _EPSILON[1, 2, 0] = _EPSILON[2, 0, 1] = 1.0
 _EPSILON[0, 2, 1] = _EPSILON[2, 1, 0] = _EPSILON[1, 0, 2] = -1.0
 _CROSS = np.einsum("akb->bka", _EPSILON).reshape(3, 9)
 _BY_FORCE = _EPSILON.reshape(3, 9)
-# Places of the second derivatives cc, cf, ct, ff, ft, tt, after the first ones, in a symmetric matrix.
+# Indices into `Balance.generalised` of the second derivatives cc to tt, for the elements of a symmetric 3 x 3 matrix.
 _SECOND = 3 + np.array([0, 1, 2, 1, 3, 4, 2, 4, 5])
 _UNIT = np.eye(3)
 
 
 def contact_jacobian(compliant: Compliant, at: Configuration) -> Float[np.ndarray, "legs 9 3"]:
-    """Return the displacements of the contact points in G by body translation, rotation and joint angles.
+    """Return the derivatives of the contact points in G by body translation, body rotation and joint angles.
 
     Parameters
     ----------
@@ -71,7 +71,7 @@ def newton_step(
     jacobian : array, shape (legs, 9, 3)
         `contact_jacobian`.
     demand : Demand
-        What is demanded.
+        Commands and loads.
     frozen : bool
         Whether the limits of friction are frozen.
     """
@@ -84,13 +84,13 @@ def newton_step(
         0.0 if frozen else contact.friction,
     )
     each = (jacobian @ stiffness) @ jacobian.transpose(0, 2, 1)
-    # Forces on the leg points do not turn with the body, as the points do.
+    # The points turn with the body; the forces on them keep their directions in G.
     crossed = balance.forces[:, :9].reshape(-1, 3).dot(_BY_FORCE).reshape(legs, 9, 3)
     turning = (at.points[:, 1:4, :9] @ crossed).reshape(-1, 3)
     joints = each[:, 6:, 6:] - balance.generalised.take(_SECOND, axis=1).reshape(legs, 3, 3)
     body = compliant.every.dot(each.reshape(legs, 81)).reshape(9, 9)
     body[3:6, 3:6] -= balance.moments - balance.moments.trace() * _UNIT
-    # The solver is faster with columns in memory; the resistance is symmetric.
+    # The solver is faster with a column-major matrix; the resistance is symmetric.
     tangent = demand.resistance.copy().T
     tangent.T.reshape(-1)[6 * (7 + 3 * legs) :: 7 + 3 * legs] += balance.slopes.reshape(-1)
     tangent[:6, :6] += body[:6, :6]

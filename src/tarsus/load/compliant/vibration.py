@@ -1,4 +1,4 @@
-"""Inertia of what a robot moves off its commanded motion, integrated by Newmark's method.
+"""Inertia of a robot's deviations from its commanded motion, integrated by Newmark's method.
 
 The loads along a motion include the inertial forces of its commanded accelerations. Beyond them a body on compliant
 legs rises and falls, and rolls, where feet take over its weight. For the offset x of body and joints from their
@@ -7,7 +7,7 @@ commands, after a step h::
     acceleration  a = (x - ahead) / (beta h^2),  ahead = x0 + h v0 + (1/2 - beta) h^2 a0
     speed         v = v0 + (1 - gamma) h a0 + gamma h a
 
-With gamma above 1/2 what is faster than the steps is damped, as are the impacts of feet (N. M. Newmark, "A method of
+With gamma above 1/2, motion faster than the steps is damped, as are the impacts of feet (N. M. Newmark, "A method of
 computation for structural dynamics", Journal of the Engineering Mechanics Division 85, 1959).
 """
 
@@ -51,23 +51,23 @@ class Vibration(NamedTuple):
 
     @staticmethod
     def gain(step: float) -> float:
-        """Return the acceleration by what an offset is beyond `ahead`, after a step of time [1/s^2]."""
+        """Return the acceleration per offset beyond `ahead`, after a step of time [1/s^2]."""
         return 1.0 / (_BETA * step * step)
 
     def ahead(self, step: float) -> Float[np.ndarray, "unknowns"]:
-        """Return the offset after a step of time [s] at whose end nothing accelerates."""
+        """Return the offset after a step of time [s] if the acceleration at its end is 0."""
         found: np.ndarray = self.offset + step * self.speed + ((0.5 - _BETA) * step * step) * self.acceleration
         return found
 
     def after(self, offset: Float[np.ndarray, "unknowns"], step: float) -> Self:
-        """Return the vibration with an offset that was found after a step of time [s]."""
+        """Return the vibration after a step of time [s], given the offset that was found at its end."""
         acceleration = (offset - self.ahead(step)) * self.gain(step)
         gained = step * ((1.0 - _GAMMA) * self.acceleration + _GAMMA * acceleration)
         return type(self)(offset, self.speed + gained, acceleration)
 
 
 def rigid_inertia(robot: Robot, angles: Float[np.ndarray, "legs 3"], payload: Payload) -> Float[np.ndarray, "6 6"]:
-    """Return the inertia of a robot whose joints do not move, by translation and rotation of B along its axes.
+    """Return the inertia of a robot with locked joints, for translation along and rotation about B's axes.
 
     Parameters
     ----------
