@@ -103,9 +103,9 @@ def differences(
 ) -> tuple[Float[Array, "n *batch"], Float[Array, "n *batch"]]:
     """Return first and second time derivatives by central differences; the time steps may be uneven.
 
-    The derivatives are those of the parabola through each sample and its two neighbours. With even steps h the errors
-    are ``h^2/6`` times the third and ``h^2/12`` times the fourth derivative. The first and last sample use their
-    neighbour's parabola; two samples give a straight line, a single sample zero.
+    The derivatives are those of the parabola through each sample and its two neighbours. With even steps h, the errors
+    are ``h^2/6`` times the third derivative for the first, and ``h^2/12`` times the fourth for the second. The first
+    and last sample use their neighbour's parabola; two samples give a straight line, a single sample zero.
 
     Parameters
     ----------

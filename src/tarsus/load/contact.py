@@ -40,7 +40,7 @@ __all__ = ["GRAVITY", "ContactForces", "contact_forces"]
 GRAVITY = (0.0, 0.0, -STANDARD_GRAVITY)
 """Standard gravity in the ground frame [m/s^2]."""
 
-# Axes that `upward` returns for it: up, forward, left.
+# Axes that `upward` returns for `GRAVITY`: up, forward, left.
 _STANDARD_AXES = np.array([[0.0, 0.0, 1.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]])
 _STANDARD_AXES.setflags(write=False)
 

@@ -33,8 +33,8 @@ TRANSFER_TIME = 0.08
 
 SHARE = 0.75
 """Share of the deflection that commands compensate for. Feet lean against each other through friction, which bears a
-part of the load: femur torques in physics are 0.6 to 0.9 of those of vertical forces. With the whole deflection, bodies
-rise above their height, walks are up to 5 % too long, and the weakest servos saturate."""
+part of the load: femur torques in physics are 0.6 to 0.9 of those of vertical forces. Where the whole deflection is
+compensated for, bodies rise above their height, walks are up to 5 % too long, and the weakest servos saturate."""
 
 
 def joint_deflections(
@@ -44,7 +44,7 @@ def joint_deflections(
     payload: Payload | float = 0.0,
     transfer_time: float = TRANSFER_TIME,
 ) -> Float[np.ndarray, "n legs 3"]:
-    """Return by how much loads turn the joints from their commands: torque over stiffness, with vertical forces.
+    """Return how far loads turn the joints from their commands: torque of vertical forces over stiffness.
 
     Loads that a plan transfers in an instant are transferred linearly within `transfer_time`.
 
@@ -67,7 +67,7 @@ def joint_deflections(
     Raises
     ------
     MissingDataError
-        If masses are unknown, or a servo without `springs`.
+        If the masses, or without `springs` a servo, are unknown.
     InputError
         If `transfer_time` is negative or not finite.
     """
@@ -76,7 +76,7 @@ def joint_deflections(
         raise InputError(f"transfer_time is {transfer_time:g} s; it must be a finite number, not negative")
     springs = JointSprings.of(motion.robot) if springs is None else springs
     deflection: np.ndarray = joint_loads(motion.robot, motion, payload=payload).torques / springs.stiffness
-    # The mean over the time of transfer, by trapezes: exact for any sampling, and constant where the load is.
+    # The mean over the transfer time, by the trapezoidal rule: exact for any sampling, and constant where the load is.
     time = motion.time
     steps = np.diff(time)[:, None, None] * (deflection[1:] + deflection[:-1]) / 2
     total = np.concatenate([np.zeros_like(deflection[:1]), np.cumsum(steps, axis=0)])
@@ -123,13 +123,13 @@ def commands_within_limits(
         What is added [rad].
     """
     limits = np.asarray(robot.limits)
-    # Angles that are beyond a limit have been named where they were planned.
+    # Angles beyond a limit were already reported when the motion was planned.
     lower, upper = np.minimum(limits[..., 0], angles), np.maximum(limits[..., 1], angles)
     return np.asarray(np.clip(angles + offsets, lower, upper))
 
 
 def what_is_compensated(share: float) -> str:
-    """Return the line about the compensation among what a result assumes.
+    """Return the line that states the compensation among the assumptions of a result.
 
     Parameters
     ----------
@@ -150,8 +150,8 @@ def compensate_deflection(
     """Return a motion whose commands compensate for the deflection of its joints under load.
 
     Feet that bear load are commanded lower by what the joints yield, so that the body sags less and swinging feet keep
-    their clearance. The feet lean less against each other, which takes load from the femurs: the more is compensated
-    for, the more their torques become those of vertical forces. Within the joint limits.
+    their clearance. The feet then lean less against each other, and as leaning takes load off the femurs, their torques
+    come closer to those of vertical forces the more is compensated for. Commands stay within the joint limits.
 
     Parameters
     ----------
@@ -174,7 +174,7 @@ def compensate_deflection(
     Raises
     ------
     MissingDataError
-        If masses are unknown, or a servo without `springs`.
+        If the masses, or without `springs` a servo, are unknown.
     InputError
         If `transfer_time` is negative or not finite, or the share is not between 0 and 1.
     """

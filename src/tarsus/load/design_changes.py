@@ -174,7 +174,7 @@ def with_lengths(robot: Robot, **lengths: float) -> Robot:
     robot : Robot
         The robot.
     **lengths : float
-        Scale factors by link, e.g. ``femur=1.1``.
+        Scale factors by link, such as ``femur=1.1``.
 
     Raises
     ------

@@ -29,7 +29,7 @@ Vector: TypeAlias = tuple[float, float, float]
 # A leg counts as singular where the sine of its tibia angle, or the distance of its foot from the coxa axis over the
 # length of the leg, is below this: errors of the torques would be magnified twentyfold.
 _SINGULAR = 0.05
-# Relative determinant below which feet count as on a line.
+# Relative determinant below which feet count as collinear.
 _LEAST_SPREAD = 1e-6
 
 
@@ -121,15 +121,15 @@ def balanced_forces(
     """Return the vertical forces with which the feet carry a weight, with the least sum of squares.
 
     Equilibrium does not determine them for more than three feet. The least-squares solution is linear in position:
-    ``f = weight / n + a (x - x_mean) + b (y - y_mean)``, a and b from the moments about the mean. Where feet bear
-    load in part, each square counts divided by its part, and the force is multiplied by it.
+    ``f = weight / n + a (x - x_mean) + b (y - y_mean)``, a and b from the moments about the mean. Where a foot bears
+    load only in part, its square is divided by that part, and its force is multiplied by it.
 
     Parameters
     ----------
     feet : sequence of (x, y, ...)
         Feet on the ground plane [m].
     contacts : sequence of bool or float
-        Feet that bear load, or how far each does, 0 to 1.
+        Which feet bear load, or to which part each does, 0 to 1.
     centre : (x, y)
         Projection of the centre of mass, in the same frame [m].
     weight : float

@@ -21,7 +21,7 @@ from tarsus.representation import represented
 
 __all__ = ["WalkChange", "walk_changes"]
 
-# Steps of body height and stance width [m], and the most of them.
+# Step by which body height and stance width are varied [m], and the greatest number of such steps.
 _STEP = 0.01
 _STEPS = 5
 # Changes that raise the factor by less than this fraction are left out.
@@ -39,7 +39,7 @@ class WalkChange:
         What to change.
     options : mapping
         The arguments of `plan_walk` that differ [m]: ``"body_height"``, ``"stroke"``, ``"gait"`` (a `Gait`), and
-        ``"stance_width"``, which is to be added to that of the walk.
+        ``"stance_width"``, a change that is added to the stance width of the walk.
     factor : float
         Smallest stall torque over peak torque of all joints.
     thermal_ratio : float
@@ -57,11 +57,13 @@ def walk_changes(
 ) -> tuple[WalkChange, ...]:
     """Return the changes of a walk that raise the smallest safety factor, the most effective first.
 
-    Evaluated are a higher body, feet nearer to the body, half of the stroke, the other gaits, and the best of them
-    together. Of several body heights or distances, the least change with the required factor is returned, else that
-    with the largest factor. Walks that are not possible are left out.
+    Evaluated are a higher body, feet nearer to the body, half of the stroke, the other gaits, and combinations of body,
+    feet and the best gait. Of several body heights or distances, the least change with the required factor is returned,
+    else that with the largest factor; of the combinations, the best, if it is better than every single change. Walks
+    that are not possible are left out.
 
-    Factors are those by which servos are judged: of vertical forces and of compliant statics the lower.
+    Factors are those by which servos are judged: for each joint, that of vertical forces or that of compliant statics,
+    whichever is lower.
 
     Parameters
     ----------
@@ -92,7 +94,7 @@ class _Tried:
     least: float
 
     def all(self) -> Iterator[WalkChange]:
-        """Yield every kind of change that helps, and the best of them together."""
+        """Yield every kind of change that helps, and their best combination if it helps more."""
         motion = self.loads.motion
         steps = _STEP * np.arange(1, _STEPS + 1)
         higher = self.best(
@@ -123,7 +125,7 @@ class _Tried:
             yield best
 
     def best(self, changes: Iterator[tuple[str, dict[str, Any]]]) -> WalkChange | None:
-        """Return the first change with the required factor, else that with the largest."""
+        """Return the first change with the required factor, else that with the largest factor; None if none helps."""
         found = []
         for text, options in changes:
             change = self.change(text, options)
@@ -149,7 +151,7 @@ class _Tried:
 
 
 def _decisive(loads: JointLoads) -> JointLoads:
-    """Return the loads that servos are judged by, compliant statics among them where these are known."""
+    """Return the loads by which servos are judged, with compliant statics where they are known."""
     return decisive_loads(loads, compliant_or_missing(loads)[0])
 
 
