@@ -129,8 +129,8 @@ def _places(entries: Sequence[LegEntry]) -> list[str]:
     return problems or _out_of_order(entries, points)
 
 
-# Other frames in which positions may have been typed: what turns them into x forward, y left, and in words. Those after
-# the first two keep the order of the legs' names, as they exchange the axes.
+# Other frames in which positions may have been typed: the matrix that turns them into x forward, y left, by rows, and
+# the frame in words. The last two exchange the axes.
 _FRAMES = (
     ((1, 0, 0, -1), "y points right; here y points left"),
     ((-1, 0, 0, 1), "x points backward; here x points forward"),

@@ -11,7 +11,7 @@ from tarsus.robot.writer import toml_string
 
 __all__ = ["copied_text"]
 
-# What a copy says where the masses are unknown; the numbers are those of the template.
+# Lines of a copy whose masses are unknown; the numbers are those of the template.
 _MASSES = """\
 # The masses are not known; without them there are no torques. Weigh the body with its battery, and the links of one leg
 # with the servos mounted on them; then put your numbers here and remove the # at the start of the line.
@@ -44,7 +44,7 @@ def copied_text(name_or_path: str | os.PathLike[str], name: str) -> str:
         written_by_hand = robot_from_text(text, where=name) == robot
     except RobotFileError:
         written_by_hand = False
-    # A name that is written in another way, such as over several lines, costs the comments.
+    # Where the name could not be replaced, as it is written over several lines for example, the comments are lost.
     text = text if written_by_hand else robot_text(robot)
     if robot.link_mass is None:
         text = _insert(text, "[leg]", _MASSES * (robot.body_mass is not None) + _LINK_MASS)
@@ -54,7 +54,7 @@ def copied_text(name_or_path: str | os.PathLike[str], name: str) -> str:
 
 
 def _insert(text: str, header: str, lines: str) -> str:
-    """Return the text with lines below the header of a table, which is created before [leg] or the legs if missing."""
+    """Return the text with lines below a table's header; a missing header is inserted before [leg] or [[legs]]."""
     if not re.search(rf"^{re.escape(header)}", text, flags=re.MULTILINE):
         before = r"^(?=((#[^\n]*\n)*)\[leg\]|\[\[legs\]\])"
         return re.sub(before, lambda _: f"{header}\n{lines}\n", text, count=1, flags=re.MULTILINE)

@@ -40,7 +40,7 @@ class Wording(NamedTuple):
     path : callable
         Takes a path; returns the one that is shown.
     whole : str
-        What the whole is called.
+        What the document as a whole is called.
     """
 
     table_of: Callable[[Location], type[BaseModel]]
@@ -184,7 +184,7 @@ def _wrong_type(_found: ErrorDetails) -> str:
 
 
 def _unknown_kind(found: ErrorDetails, key: str) -> str:
-    """Return the problem of a table whose kind, a key of it, is none of those known."""
+    """Return the problem of a table whose kind, named by one of its keys, is unknown."""
     context: dict[str, Any] = found["ctx"]
     name, tag = context["discriminator"].strip("'"), str(context["tag"])
     known = re.findall(r"'([^']*)'", context["expected_tags"])
@@ -197,7 +197,7 @@ def _inside(key: str, name: str) -> str:
     return f"{key}.{name}" if key else name
 
 
-# Of these the key is a part of the input, or there is none.
+# Findings that concern a key inside the value found, not the value itself, or no key at all.
 _KINDS: dict[str, Callable[[ErrorDetails, str], str]] = {
     "union_tag_invalid": _unknown_kind,
     "union_tag_not_found": lambda found, key: f"{_inside(key, found['ctx']['discriminator'].strip(chr(39)))}: missing",

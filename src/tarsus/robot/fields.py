@@ -114,7 +114,7 @@ class Numbers(_Kind):
 
 @dataclass(frozen=True)
 class JointRange(Numbers):
-    """The lower and the upper limit of a joint, whose errors name the unit or the zero that they may have instead."""
+    """The lower and the upper limit of a joint; errors name another unit or zero in which they may have been typed."""
 
     def check(self, value: object) -> tuple[Decimal, ...]:
         """Return the limits as decimals."""

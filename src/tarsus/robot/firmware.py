@@ -19,14 +19,14 @@ from tarsus.robot.shape import JOINTS
 __all__ = ["FIRMWARE", "SIDES", "Firmware", "convert_limits"]
 
 SIDES = ("left", "right")
-"""Sides of the robot; in firmware, angles often have the other sign on one of them."""
+"""Sides of the robot; in firmware, angles often have the opposite sign on one of them."""
 
 _LARGEST = 180.0
 _ROUNDING = 1e-6
 
 
 class _Unit(NamedTuple):
-    """A unit of limits: the value at an angle of 0, degrees for each unit, whether it is the servo's own angle."""
+    """A unit of limits: its value at an angle of 0, the degrees per unit, whether it measures the servo's own angle."""
 
     zero: float
     degrees: float
@@ -47,13 +47,13 @@ class Firmware:
     name : str
         Name of the firmware.
     units : mapping
-        Units in which it has limits.
+        Units in which its limits may be given, by name.
     angles : mapping
         For each side, sign and offset of each joint [deg]: ours = sign * (angle of the firmware) + offset.
     servo_signs : mapping
-        For each side, the sign of each joint's servo against the angle of the firmware.
+        For each side, the sign of each joint's servo angle relative to the angle of the firmware.
     horns : tuple of float
-        Usual offsets of the servo horns of coxa, femur and tibia, contained in its angles [deg].
+        Usual offsets of the servo horns of coxa, femur and tibia, which the firmware's angles contain [deg].
     """
 
     name: str
@@ -63,11 +63,11 @@ class Firmware:
     horns: tuple[float, float, float] = (0.0, 0.0, 0.0)
 
 
-# Coxa to the rear, femur down from the level, tibia outward from the right angle with the femur; the coxa of the left
-# legs turns to the rear counter-clockwise, that of the right legs clockwise.
+# In Phoenix, positive angles turn the coxa to the rear, the femur down from level, and the tibia outward from a right
+# angle with the femur. To the rear is counter-clockwise for the left legs, clockwise for the right ones.
 _PHOENIX_ANGLES: Mapping[str, _Angles] = {"left": ((1, 0), (-1, 0), (1, -90)), "right": ((-1, 0), (-1, 0), (1, -90))}
 _INVERTED_RIGHT: Mapping[str, _Signs] = {"left": (1, 1, 1), "right": (-1, -1, -1)}
-# cPwmDiv = 991, cPFConst = 592: 1500 us at 0, 1000/99.1 us for a degree.
+# cPwmDiv = 991, cPFConst = 592: 1500 us at an angle of 0, 1000/99.1 us per degree.
 _SSC32 = _Unit(1500, 0.0991, True)
 # cPwmMult = 128, cPwmDiv = 375, for tenths of a degree.
 _AX12 = _Unit(512, 37.5 / 128, True)
@@ -121,7 +121,7 @@ def convert_limits(
     ----------
     firmware : str
         One of `FIRMWARE`: ``"phoenix"`` (angles of the Phoenix code), ``"lynxmotion"`` (its configuration for the
-        Lynxmotion Phoenix and the SSC-32, whose right legs have the servos' signs), ``"phantomx"`` (its
+        Lynxmotion Phoenix and the SSC-32, whose right legs have the signs of the servos), ``"phantomx"`` (its
         configuration for AX-12 servos) or ``"freenove"``.
     joint : str
         ``"coxa"``, ``"femur"`` or ``"tibia"``.

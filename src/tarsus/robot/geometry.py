@@ -97,9 +97,9 @@ class LegGeometry(NamedTuple):
         return LegGeometry(*(as_array(xp, values) for values in self))
 
     def with_axes(self, count: int) -> LegGeometry:
-        """Return the constants of NumPy with axes after that of the legs.
+        """Return NumPy constants with axes of length 1 after that of the legs.
 
-        With the positions of a foot on the last axes, arithmetic with these constants takes half the time.
+        With the positions of a foot on these last axes, arithmetic with the constants takes half the time.
         """
         return LegGeometry(*(values.reshape(*values.shape, *(1,) * count) for values in self))
 

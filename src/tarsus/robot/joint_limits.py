@@ -16,10 +16,10 @@ if TYPE_CHECKING:
 __all__ = ["STOPPING_TIME", "UNKNOWN_SPEED", "JointLimits", "joint_limits", "per_joint", "servo_speeds"]
 
 UNKNOWN_SPEED = 5.0
-"""Speed limit of a joint whose servo, or its speed, is unknown [rad/s]: 60 deg in 0.21 s, as of a slow hobby servo."""
+"""Speed limit of a joint whose servo or servo speed is unknown [rad/s]: 60 deg in 0.21 s, as a slow hobby servo."""
 
 STOPPING_TIME = 0.05
-"""Time in which a joint reaches its speed limit from rest, or stops from there, by default [s]."""
+"""Default time in which a joint reaches its speed limit from rest, or stops from it [s]."""
 
 
 class JointLimits(NamedTuple):

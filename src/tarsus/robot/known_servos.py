@@ -1,4 +1,4 @@
-"""What is known of single servos beyond the catalogue, each with its source."""
+"""Data of individual servos for which the catalogue has no columns, each with its source."""
 
 from __future__ import annotations
 
@@ -63,4 +63,4 @@ KNOWN_SERVOS = {
         dead_band=math.radians(3 / 2000 * 270),
     ),
 }
-"""By the names of the catalogue."""
+"""Figures of servos, by their names in the catalogue."""

@@ -1,4 +1,4 @@
-"""TOML of robot files, and the likely cause where a text is none."""
+"""Parsing of robot files, and the likely cause where a text is not valid TOML."""
 
 from __future__ import annotations
 
@@ -49,7 +49,7 @@ def _is_json(text: str) -> bool:
     try:
         return isinstance(json.loads(text), dict)
     except (ValueError, RecursionError):
-        # JSON with a mistake in it begins like JSON nevertheless; no TOML begins with a brace.
+        # JSON with a mistake in it still begins with a brace, which no TOML does.
         return text.lstrip().startswith("{")
 
 
@@ -68,7 +68,7 @@ def _not_toml(message: str, text: str) -> str:
 
 
 def _likely_slip(line: str) -> str:
-    """Return the likely cause of a line that is no TOML, or an empty string."""
+    """Return the likely cause why a line is not valid TOML, or an empty string."""
     if comma := re.fullmatch(r"[^#\"']*=\s*(-?\d+),(\d+)\s*(#.*)?", line):
         return f". Likely cause: a decimal comma; write {comma[1]}.{comma[2]}"
     if line.partition("#")[0].count('"') % 2:

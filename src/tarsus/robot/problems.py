@@ -20,7 +20,7 @@ from tarsus.robot.schema import (
 
 __all__ = ["problems_of"]
 
-# Each table under the last name of the path that leads to it.
+# The model of each table, by the last name in its path.
 _TABLES: dict[str, type[BaseModel]] = {
     "": RobotFile,
     "body": Body,

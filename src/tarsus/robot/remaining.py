@@ -1,4 +1,4 @@
-"""The robot that is left without some of its legs, and one whose coxa angles count from elsewhere."""
+"""A robot that has lost some of its legs, and a robot whose coxa angles have other zeros."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 __all__ = ["remaining_robot", "turned_robot"]
 
 _FEWEST_LEGS = 4
-# Values of a robot that it has for each leg.
+# Attributes of a robot with one value for each leg.
 _OF_LEGS = (
     *("mount_position", "mount_yaw", "coxa", "femur", "tibia", "limits"),
     *("femur_axis_offset", "foot_radius", "link_com"),
@@ -24,7 +24,7 @@ _OF_LEGS = (
 
 
 def remaining_robot(robot: Robot, legs: list[int]) -> Robot:
-    """Return the robot with some of its legs; the masses of the others are part of its body.
+    """Return the robot with some of its legs; the masses of the lost legs are added to its body, at their mounts.
 
     Parameters
     ----------
@@ -36,7 +36,7 @@ def remaining_robot(robot: Robot, legs: list[int]) -> Robot:
     Raises
     ------
     InputError
-        If fewer legs are left.
+        If fewer than four legs are left.
     """
     if len(legs) < _FEWEST_LEGS:
         raise InputError(f"{len(legs)} legs are left; a robot has {_FEWEST_LEGS} or more")
@@ -57,14 +57,14 @@ def remaining_robot(robot: Robot, legs: list[int]) -> Robot:
 
 
 def turned_robot(robot: Robot, coxa: Float[np.ndarray, "legs"]) -> Robot:
-    """Return the same robot with its coxa angles counted from others: its legs straight out are turned there.
+    """Return the same robot with other zeros of its coxa angles: `mount_yaw` and limits are shifted.
 
     Parameters
     ----------
     robot : Robot
         A single robot.
     coxa : array, shape (legs,)
-        Coxa angles that are 0 in the robot that is returned [rad].
+        Coxa angles of `robot` that are 0 in the robot returned [rad].
     """
     limits = np.array(robot.limits)
     limits[:, 0] -= coxa[:, None]

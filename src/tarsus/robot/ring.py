@@ -11,24 +11,24 @@ if TYPE_CHECKING:
 
 __all__ = ["ring"]
 
-# Decimals of directions [deg]: less than a micrometre, and more than the noise of mounts that are computed.
+# Decimals to which directions are rounded [deg]: finer than a micrometre, coarser than the noise of computed mounts.
 _DIGITS = 6
-# By which part of their greatest distance mounts in the same direction are moved to where their legs point.
+# Shift of mounts in the same direction along their legs, as a fraction of the greatest distance from the middle.
 _ASIDE = 1e-3
 
 
 def ring(mounts: Complex[np.ndarray, "legs"], directions: Complex[np.ndarray, "legs"]) -> list[int]:
     """Return the legs counter-clockwise, starting from straight ahead.
 
-    The mounts decide, seen from their middle; where they lie in the same direction, for example on one line along the
-    body, their legs point aside in the order of the ring.
+    Legs are ordered by the directions of their mounts, seen from the middle of the mounts. Those whose mounts lie in
+    the same direction, for example on one line along the body, are ordered by where they point.
 
     Parameters
     ----------
     mounts : complex array, shape (legs,)
         Positions of the coxa axes, x forward and y left, in any unit.
     directions : complex array, shape (legs,)
-        Where the legs point at zero, of length 1.
+        Unit vectors of the directions in which the legs point at a coxa angle of zero.
 
     Returns
     -------
@@ -41,6 +41,6 @@ def ring(mounts: Complex[np.ndarray, "legs"], directions: Complex[np.ndarray, "l
     shared = (angles[:, None] == angles).sum(axis=1) > 1
     beside = np.angle(places + _ASIDE * np.abs(places).max() * directions, deg=True)
     aside = np.where(shared, np.round((beside - angles + 180) % 360 - 180, _DIGITS), 0.0)
-    # Straight ahead the ring is open: legs that point to the right come last.
+    # The ring begins straight ahead: of the legs mounted there, those that point to the right come last.
     angles = np.where((angles == 0) & (aside < 0), 360.0, angles)
     return [int(leg) for leg in np.lexsort((aside, angles))]

@@ -255,7 +255,7 @@ class Robot:
 
 
 def require_robot(robot: object) -> None:
-    """Refuse what is no robot.
+    """Refuse anything that is not a robot.
 
     Parameters
     ----------
@@ -273,12 +273,12 @@ def require_robot(robot: object) -> None:
 
 
 def require_leg_number(name: str, leg: object, legs: int) -> None:
-    """Refuse what is no number of a leg.
+    """Refuse anything that is not the number of a leg.
 
     Parameters
     ----------
     name, leg : str, object
-        What the leg is given for, in messages; expected: the number of a leg.
+        What needs the leg, for messages; the value, expected: the number of a leg.
     legs : int
         How many legs the robot has.
 

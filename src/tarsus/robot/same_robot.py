@@ -1,4 +1,4 @@
-"""Whether two robots are the same one, but for the errors of its measures: what a plant and its commands must be of."""
+"""Check that a plant and its commands are of the same robot, up to errors in its dimensions."""
 
 from __future__ import annotations
 
@@ -14,8 +14,8 @@ if TYPE_CHECKING:
 
 __all__ = ["require_same_robot"]
 
-# By how much links and mounts may differ, over the length of a leg: those of another robot differ by more, those of a
-# robot with the errors of its measures by less.
+# Greatest difference of links and mounts, over the length of a leg: those of another robot differ by more, those of the
+# same robot with errors in its dimensions by less.
 _SAME_MEASURES = 0.1
 
 
@@ -27,7 +27,7 @@ def require_same_robot(plant: Robot, commanded: Robot, what: str) -> None:
     plant, commanded : Robot
         Single robots: that of the plant, and the one that its commands are made for.
     what : str
-        What the commands are from, in the message: "controller".
+        Where the commands come from, for the message, such as "controller".
 
     Raises
     ------
@@ -39,7 +39,7 @@ def require_same_robot(plant: Robot, commanded: Robot, what: str) -> None:
         names = " and ".join(", ".join(robot.leg_names) for robot in (plant, commanded))
         raise InputError(f"{both}, but their legs are {names}")
     lengths = np.sum([commanded.coxa, commanded.femur, commanded.tibia], axis=0)
-    # Other directions of the legs count by how far they move the feet.
+    # A difference in the direction of a leg counts as the distance by which it moves the foot.
     turn = np.abs(np.angle(np.exp(1j * (plant.mount_yaw - commanded.mount_yaw)))) * lengths
     off = np.max([*np.abs(_measures(plant) - _measures(commanded)), turn], axis=0)
     leg = int((off / lengths).argmax())

@@ -62,7 +62,7 @@ class Servo:
 
     @property
     def buses(self) -> frozenset[str]:
-        """Names of the buses on which the servo runs; servos with one in common run on the same."""
+        """Names of the buses on which the servo runs; servos with a name in common can share a bus."""
         name, _, other = self.control.partition(" (")
         if name.startswith("Dynamixel"):
             return frozenset(f"Dynamixel {number}.0" for number in (1, 2) if f"P{number}" in self.control)

@@ -10,12 +10,12 @@ from tarsus.robot.servo import Servo
 __all__ = ["NO_LOAD_SPEED", "ROTOR_INERTIA", "servo_dynamics"]
 
 NO_LOAD_SPEED = 5.0
-"""Speed without load, where the catalogue has none [rad/s]."""
+"""No-load speed that is assumed where the catalogue has none [rad/s]."""
 
 ROTOR_INERTIA = 0.005
-"""Inertia of rotor and gears, reflected to the output, where it is unknown; less in small servos [kg m^2]."""
+"""Inertia of rotor and gears, reflected to the output, assumed where it is unknown; less in small servos [kg m^2]."""
 
-# What is assumed where no source says more. Position error at which a servo gives its stall torque [rad]: servos whose
+# Assumptions where no source gives a value. Position error at which a servo gives its stall torque [rad]: servos whose
 # gain is known have 0.11 to 0.19, stiff digital ones less. With it, and the twist of the gears, the presets' joints
 # have 9-24 N m/rad, in the lower part of what was measured on the loaded joints of a hexapod (10-79 N m/rad).
 _FULL_TORQUE_ERROR = math.radians(5.0)
@@ -26,12 +26,12 @@ _GEAR_TWIST = math.radians(1.0)
 _TIME_CONSTANT = 0.035
 _BACKLASH = math.radians(0.5)
 _DEAD_BAND = math.radians(0.5)
-_PWM_RATE, _BUS_RATE = 50.0, 100.0  # [1/s]
-_PWM_DELAY, _BUS_DELAY = 0.004, 0.006  # [s]
+_PWM_RATE, _BUS_RATE = 50.0, 100.0  # how often a servo takes over a new command [1/s]
+_PWM_DELAY, _BUS_DELAY = 0.004, 0.006  # after a command is taken over [s]
 
 
 def servo_dynamics(servo: Servo, stall: float, speed: float) -> tuple[dict[str, float], list[str]]:
-    """Return what the catalogue does not say of a servo, known or assumed, and a line for each.
+    """Return the data of a servo that the catalogue lacks, known or assumed, and a line on the origin of each value.
 
     Parameters
     ----------
@@ -48,7 +48,7 @@ def servo_dynamics(servo: Servo, stall: float, speed: float) -> tuple[dict[str, 
         ``control_stiffness`` and ``gear_stiffness`` [N m/rad], ``rotor_inertia`` [kg m^2], ``backlash`` and
         ``dead_band`` [rad], ``update_rate`` [1/s], ``delay`` [s].
     lines : list of str
-        Where each comes from.
+        Each value and where it comes from.
     """
     known = KNOWN_SERVOS.get(servo.name, KnownServo(source=""))
     pulses = "pwm" in servo.control.lower()

@@ -35,7 +35,7 @@ TAILS: dict[str, tuple[str | int, ...]] = {
 }
 OPTIONAL = ("link_mass", "body_mass", "body_size")
 _POSITIVE = ("femur", "tibia", "body_mass", "body_size")
-# Tolerance of +-180 deg [rad].
+# Tolerance of the bounds of joint limits, +-180 deg [rad].
 _ROUNDING = 1e-9
 _NOT_NEGATIVE = ("coxa", "foot_radius", "link_mass")
 

@@ -48,12 +48,12 @@ def degrees(value: float) -> Decimal:
 
 
 def per_radian(value: Decimal) -> float:
-    """Return the double nearest to `value` for a degree, for a radian."""
+    """Return a quantity of `value` per degree as the nearest double per radian."""
     return float(_CONTEXT.divide(_CONTEXT.multiply(value, Decimal(180)), _PI))
 
 
 def per_degree(value: float) -> Decimal:
-    """Return the shortest decimal for a degree that `per_radian` converts to the same double."""
+    """Return the shortest decimal per degree that `per_radian` converts to the same double."""
     exact = _CONTEXT.divide(_CONTEXT.multiply(Decimal(value), _PI), Decimal(180))
     roundings = (Context(prec=digits, traps=[]).plus(exact) for digits in range(1, _DIGITS_OF_A_DOUBLE + 1))
     return next(rounded for rounded in roundings if per_radian(rounded) == value)
