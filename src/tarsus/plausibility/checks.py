@@ -20,7 +20,7 @@ __all__ = ["plausibility_warnings"]
 def plausibility_warnings(robot: Robot) -> tuple[PlausibilityWarning, ...]:
     """Return warnings of values that no robot like this one has, such as lengths in cm or limits in radians.
 
-    The bounds hold for robots with four to eight legs, of 60 mm to 1.5 m a leg. They come from the presets and other
+    The bounds hold for robots with four to eight legs, each 60 mm to 1.5 m long. They come from the presets and other
     published robots, with a margin; a robot without warnings may still be wrong.
 
     Parameters

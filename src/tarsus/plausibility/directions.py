@@ -17,14 +17,16 @@ if TYPE_CHECKING:
 
 __all__ = ["direction_warnings"]
 
-# A leg points inward if it crosses to the other side by this angle, or to the other end by that [deg].
+# A leg points inward if it points to the other side by more than the first, or to the other end by more than the second
+# of these angles [deg].
 MOST_ACROSS, MOST_BACK = 15.0, 30.0
-# Legs nearer to the middle than this share of the extent belong to neither side, or neither end.
+# Legs nearer to the middle than these shares of the farthest leg's distance belong to neither side, or neither end.
 _MIDDLE = 0.3, 0.5
+# Greatest deviation of a leg's direction from the mirror image of the opposite leg's [deg].
 MOST_YAW_DIFFERENCE = 20.0
-# Horizontal distance of a standing foot from the femur axis, in lengths of femur and tibia.
+# Horizontal distance of a standing foot from the femur axis, over the length of femur and tibia.
 _STANDING = 0.5
-# Angles of a whole turn in radians.
+# A whole turn in radians: angles that do not exceed it may have been typed in radians.
 RADIANS = 6.3
 
 
@@ -58,7 +60,7 @@ def _inward(size: Dimensions, yaw: Float[np.ndarray, "legs"]) -> Bool[np.ndarray
     return np.asarray(across | back)
 
 
-# Errors in the yaw of all legs, and what corrects them; tried in this order.
+# Errors in the yaw of all legs: the corrected angles, the cause, the remedy; tried in this order.
 _Correction = Callable[[Dimensions], "Float[np.ndarray, 'legs']"]
 _SYSTEMATIC: tuple[tuple[_Correction, str, str], ...] = (
     (
@@ -123,7 +125,7 @@ def _why_inward(robot: Robot, size: Dimensions, inward: Bool[np.ndarray, "legs"]
 
 
 def _exchanged(size: Dimensions, inward: Bool[np.ndarray, "legs"]) -> tuple[int, int] | None:
-    """Return two legs of which both point outward with the other's angle."""
+    """Return the two legs that point inward, if both point outward with each other's angle, else None."""
     legs = [int(leg) for leg in np.flatnonzero(inward)]
     if len(legs) != 2:
         return None
@@ -151,13 +153,13 @@ def _warning(
 
 
 def _asymmetry(size: Dimensions, yaw: Float[np.ndarray, "legs"]) -> dict[tuple[int, int], float]:
-    """Return how far the directions of each two opposite legs are from being mirror images [deg]."""
+    """Return, for each pair of opposite legs, how far their directions are from being mirror images [deg]."""
     pairs = [(leg, other) for leg, other in enumerate(mirror_partners(size)) if other is not None and leg < other]
     return {(leg, other): abs(float(wrapped(yaw[[leg]] + yaw[[other]])[0])) for leg, other in pairs}
 
 
 def _differing(robot: Robot, size: Dimensions) -> Iterator[PlausibilityWarning]:
-    """Warn of a leg whose direction is not the mirror image of that of the opposite leg, while others are."""
+    """Warn of legs whose direction is not the mirror image of the opposite leg's, if most legs are symmetric."""
     off = _asymmetry(size, size.yaw)
     wrong = [pair for pair in off if off[pair] > MOST_YAW_DIFFERENCE]
     if 2 * len(wrong) > len(off):

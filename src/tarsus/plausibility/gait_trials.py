@@ -16,9 +16,9 @@ from tarsus.robot.robot import Robot, require_robot
 __all__ = ["NO_STROKE", "GaitTrial", "try_gaits"]
 
 NO_STROKE = "the longest stroke is 0: in the rest stance a leg can't be lifted, or two feet are too close"
-"""Why a robot whose legs reach the ground can't walk."""
+"""Problem of a gait with which a robot can't walk although its legs reach the ground."""
 
-# The default stroke of a planned walk, and the length of the walk, in longest strokes and in strokes.
+# Stroke of the walk over the longest stroke, the default of planned walks, and length of the walk in strokes.
 _STROKE, _STROKES = 0.6, 3
 _RATE = 50.0
 

@@ -16,31 +16,32 @@ from tarsus.robot.robot import JOINTS, Robot
 __all__ = ["LEG_CODES", "length_warnings"]
 
 LEG_CODES = frozenset({"length-unit", "link-ratio"})
-"""Codes of the warnings after which the length of a leg is no measure for anything else."""
+"""Codes of the warnings after which other values can't be compared with the length of a leg."""
 
 # Length of a straight leg [mm]: hexapods of 2 g servos have 60, walking machines of 40 kg 1200.
 LEG = (45.0, 2000.0)
 _USUAL_LEG = (50.0, 1500.0)
-# Bounds of ratios, from the presets and published robots with a margin of 2 and more at either end.
+# Bounds of ratios, from the presets and published robots with a margin of a factor of 2 or more at either end.
 TIBIA_TO_FEMUR = (0.28, 7.0)
 MOST_COXA = 1.0
 RADIUS_TO_LEG = (0.08, 2.0)
 _USUAL_RADIUS = (0.15, 1.3)
 BOX_TO_MOUNTS = (0.25, 4.0)
-# A body is higher than this share of its longer side only if it is no more than this higher than the shorter one.
+# A body is too high if its height exceeds this share of its longer side, and this multiple of the shorter one.
 MOST_BOX_HEIGHT = 0.8, 2.0
 MOST_FOOT = 0.35
 HEIGHT_TO_REACH = (0.08, 1.0)
 SWING_TO_REACH = (0.025, 1.0)
-# A link of one leg against those of the other legs, unless the opposite leg has the same; in lengths of a leg.
+# A link differs from those of the other legs, and from the opposite leg's, if it is at least the first times longer or
+# shorter, and the difference over the length of a leg is more than the second.
 MOST_LEG_RATIO, LEAST_DIFFERENCE = 3.0, 0.1
-# Usual length of a leg in radii of the coxa axes.
+# Usual length of a leg over the radius of the coxa axes.
 _USUAL_PROPORTION = 2.8
 
 
 def length_warnings(robot: Robot, size: Dimensions) -> Iterator[PlausibilityWarning]:
     """Yield the warnings on the lengths of a single robot."""
-    # What is compared with a doubtful length would be named for an error that it does not have.
+    # Values compared with a doubtful length would be reported for an error that they do not have.
     legs = list(_legs(size)) or list(_links(size))
     yield from legs
     yield from _single_links(robot, size)
@@ -80,7 +81,7 @@ def _links(size: Dimensions) -> Iterator[PlausibilityWarning]:
     ratio = size.tibia / size.femur
     if not _inside(TIBIA_TO_FEMUR, ratio):
         long, short = ("tibia", "femur") if ratio > 1 else ("femur", "tibia")
-        # Of the two, the one whose correction by 10 gives the more usual proportions.
+        # The wrong one is that whose correction by a factor of 10 gives the more usual proportions.
         shortened = size.leg - 0.9 * getattr(size, long)
         lengthened = size.leg + 9 * getattr(size, short)
         wrong_is_short = _oddity(size, lengthened) < _oddity(size, shortened)
@@ -115,7 +116,7 @@ def _oddity(size: Dimensions, leg: float) -> float:
 
 
 def _single_links(robot: Robot, size: Dimensions) -> Iterator[PlausibilityWarning]:
-    """Warn of a leg with a link of quite another length than those of the other legs and of the opposite leg."""
+    """Warn of a leg with a link whose length differs from those of the other legs and of the opposite leg."""
     partners = mirror_partners(size)
     for joint in JOINTS:
         lengths = np.asarray(getattr(robot, joint), dtype=np.float64) * 1000
@@ -206,7 +207,7 @@ def _feet(robot: Robot, size: Dimensions) -> Iterator[PlausibilityWarning]:
 
 
 def _heights(robot: Robot, size: Dimensions) -> Iterator[PlausibilityWarning]:
-    """Warn of a body height or a swing height that no leg like these has."""
+    """Warn of a body height or a swing height that no robot with such legs has."""
     raised = np.abs(np.asarray(robot.mount_position)[:, 2] + np.asarray(robot.femur_axis_offset)[:, 1]).max() * 1000
     reach = size.reach + raised
     for key, value, (least, most) in (

@@ -13,19 +13,20 @@ from tarsus.robot.robot import JOINTS, Robot
 
 __all__ = ["limit_warnings"]
 
-# A whole turn in radians; narrower ranges in degrees are those of a locked joint [deg].
+# Limits within the first, a whole turn in radians, look like radians, except ranges narrower than the second, which are
+# those of a locked joint [deg].
 _TURN, _LEAST_SPAN = 6.3, 0.2
 # A joint that turns this far can be mounted with any zero [deg].
 FREE_SPAN = 300.0
 # Middle of the range of each joint, from the presets with a margin: the leg must point outward, the femur must be able
-# to rise, the tibia to hang down [deg].
+# to rise, the tibia to hang down, in the middle of its range or at its lower limit [deg].
 MOST_COXA_MIDDLE = 60.0
 FEMUR_MIDDLE = (-30.0, 65.0)
 MOST_TIBIA_MIDDLE, LEAST_TIBIA = -25.0, -120.0
-# Ranges that a corrected zero or sign may give [deg].
+# Middles of the range that a corrected zero or sign may give [deg].
 _USUAL_FEMUR = (-30.0, 50.0)
 _USUAL_TIBIA = (-115.0, -35.0)
-# Deviation of a coxa range from the mirror image of the opposite leg's, where both are the same [deg].
+# Greatest deviation of a coxa range from the mirror image of the opposite leg's, where both ranges are alike [deg].
 MOST_CHIRALITY = 30.0
 
 
@@ -112,7 +113,7 @@ def _coxa(robot: Robot, size: Dimensions) -> Iterator[PlausibilityWarning]:
             )
 
 
-# Other zeros and signs of femur and tibia: sign and offset that give ours, and in words.
+# Other zeros and signs of femur and tibia: the sign and the offset [deg] that convert to ours, and a description.
 _FEMUR_CONVENTIONS = (
     (-1, 0, "positive angles lower the foot"),
     (1, -90, "zero is the femur straight down, or the range of the servo, 0 to 180"),
@@ -166,14 +167,14 @@ def _convention(
     usual: tuple[float, float],
     ours: str,
 ) -> PlausibilityWarning:
-    """Return the warning with those other zeros and signs that would make the range a usual one."""
+    """Return the warning, with those other zeros and signs for which the range would be a usual one."""
     low, high = _median(size, joint)
     centre = (usual[0] + usual[1]) / 2
     fitting = []
     for sign, offset, words in conventions:
         ends = sorted((sign * low + offset, sign * high + offset))
         middle = sum(ends) / 2
-        # A servo's range clipped at 180 may exceed it by this much.
+        # The converted range may exceed -180 by up to 10, and is clipped there.
         if usual[0] <= middle <= usual[1] and ends[0] >= -190:
             fitting.append((abs(middle - centre), words, _range(max(ends[0], -180.0), ends[1])))
     fitting.sort()

@@ -22,10 +22,10 @@ LINK_SHARE = (0.02, 0.97)
 _USUAL_LINK_SHARE = (0.1, 0.9)
 # A link's centre of mass, along the link from its inner joint, in lengths of the link.
 LINK_COM = (-0.6, 1.5)
-# How far the body's centre of mass may be outside its box and outside the polygon of the coxa axes, in their radii.
+# How far the body's centre of mass may be outside both its box and the polygon of the coxa axes, over the axes' radius.
 MOST_OVERHANG = 0.25
 
-# Masses typed in another unit: factors on the body and on each link, the keys, and the error in words.
+# Masses typed in another unit: factors that correct the body and each link, the keys, and the error in words.
 _MASS_ERRORS: tuple[tuple[float, tuple[float, ...], str, str], ...] = (
     (1e-3, (1e-3, 1e-3, 1e-3), "body.mass_kg, leg.mass_kg", "all masses are in g instead of kg"),
     (1e-3, (1, 1, 1), "body.mass_kg", "the body's mass is in g instead of kg"),

@@ -17,7 +17,7 @@ MOST_DISTANCE = 0.25
 
 
 def mirror_partners(size: Dimensions) -> list[int | None]:
-    """Return for each leg the one at its mirror image; itself on the x axis, None where there is none.
+    """Return for each leg the leg at its mirror image: itself if it is on the x axis, None where there is none.
 
     Parameters
     ----------
@@ -33,7 +33,7 @@ def mirror_partners(size: Dimensions) -> list[int | None]:
 
 
 def position_warnings(robot: Robot, size: Dimensions) -> Iterator[PlausibilityWarning]:
-    """Yield warnings of two legs that are no mirror images of each other, while all the others are."""
+    """Yield a warning if two legs are not mirror images of each other while all the others are."""
     partners = mirror_partners(size)
     alone = [leg for leg, other in enumerate(partners) if other is None]
     if len(alone) == 1:

@@ -18,7 +18,7 @@ _MIDDLE = 0.1
 
 
 def name_warnings(robot: Robot, size: Dimensions) -> Iterator[PlausibilityWarning]:
-    """Yield a warning for names that say another side or another end than the positions."""
+    """Yield a warning for each axis along which names of legs contradict their positions."""
     named = (
         (1, "y", [side_in_name(name) for name in robot.leg_names], "left", "right"),
         (0, "x", [end_in_name(name) for name in robot.leg_names], "front", "rear"),

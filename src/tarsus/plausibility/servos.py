@@ -1,4 +1,4 @@
-"""Plausibility of the data of servos that are no catalogue entries."""
+"""Plausibility of the data of servos."""
 
 from __future__ import annotations
 
@@ -11,12 +11,13 @@ from tarsus.robot.servo import Servo
 
 __all__ = ["servo_warnings"]
 
-# Bounds from the servo catalogue with a margin; the strongest hobby servos give 90 N m per kg.
+# Bounds from the servo catalogue with a margin; the strongest hobby servos give 90 N m per kg. Mass [kg], stall torque
+# over mass [N m/kg], no-load speed [rad/s], travel [deg].
 LEAST_MASS = 0.0005
 MOST_TORQUE_PER_MASS = 150.0
 SPEED = (0.4, 40.0)
 LEAST_TRAVEL = 6.3
-_KG_CM, _OUNCE_INCH = 0.0980665, 0.00706155
+_KG_CM, _OUNCE_INCH = 0.0980665, 0.00706155  # [N m]
 
 
 def servo_warnings(robot: Robot) -> Iterator[PlausibilityWarning]:

@@ -1,4 +1,4 @@
-"""Units in which a length may have been typed for mm."""
+"""Units in which a length may have been typed instead of mm."""
 
 from __future__ import annotations
 
@@ -6,7 +6,8 @@ from collections.abc import Callable
 
 __all__ = ["unit_causes"]
 
-# Units smaller in number than mm, with their size in mm; and typing errors of a power of ten.
+# Units in which lengths may have been typed that are too small or too large, with their size in mm. Factors of 10 and
+# 0.1 also stand for a digit that is missing or too many.
 _TOO_SMALL = (("cm", 10.0), ("inches", 25.4), ("m", 1000.0))
 _TOO_LARGE = (("tenths of a mm", 0.1),)
 
