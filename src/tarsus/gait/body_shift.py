@@ -1,8 +1,8 @@
 """Body shift: the periodic displacement of the body that keeps it over the feet on the ground.
 
 With four legs, the centre of mass leaves the triangle of three feet unless the body moves over it before the fourth
-foot lifts. The shift is a Fourier series of the gait's phase, so that it is smooth; its coefficients are those of least
-acceleration that keep a stability margin at every phase with a foot in the air.
+foot lifts. The shift is a Fourier series of the gait's phase, and thus smooth. Among the coefficients that keep a
+stability margin at every phase with a foot in the air, those with the least acceleration are used.
 """
 
 from __future__ import annotations
@@ -20,9 +20,11 @@ _HARMONICS = 3
 COEFFICIENTS = 2 * _HARMONICS + 1
 """Number of complex coefficients of a body shift: its mean, then a cosine and a sine of each harmonic."""
 
-# Weights of the mean and of the harmonics, by the square of their acceleration, and of the constraints.
+# Cost weights: of the squared mean and the squared harmonics, which grow with the square of their acceleration (h^2);
+# and of squared violations of the margin.
 _WEIGHTS = np.array([0.1, *(0.1 + h**4 for h in range(1, _HARMONICS + 1) for _ in range(2))])
 _PENALTY = 1e4
+# Newton's method: most iterations, step sizes tried, and least relative decrease of the cost in a step.
 _ITERATIONS, _STEPS, _PROGRESS = 40, 0.5 ** np.arange(8), 1e-9
 
 
@@ -50,21 +52,21 @@ def _basis(phases: Float[np.ndarray, "*batch"]) -> Float[np.ndarray, "*batch 7"]
 def edge_constraints(
     feet: Complex[np.ndarray, "n legs"], contacts: Bool[np.ndarray, "n legs"], centre: Complex[np.ndarray, "n"]
 ) -> tuple[Int[np.ndarray, "k"], Complex[np.ndarray, "k"], Float[np.ndarray, "k"]]:
-    """Return the edges of the support polygons: of which sample, their inward normals, the distances of the centre.
+    """Return the edges of the support polygons: sample, inward normal, and distance of the centre of mass inside.
 
     Parameters
     ----------
     feet : complex array, shape (n, legs)
-        Feet in the order of the ring [m].
+        Feet in the order of the legs, counter-clockwise around the body [m].
     contacts : array of bool, shape (n, legs)
-        Which are on the ground.
+        Which of them are on the ground.
     centre : complex array, shape (n,)
         Projection of the centre of mass [m].
 
     Returns
     -------
     sample : array of int, shape (k,)
-        Sample of each edge.
+        Index of the sample to which each edge belongs.
     inward : complex array, shape (k,)
         Unit normals.
     distance : array, shape (k,)
@@ -73,7 +75,7 @@ def edge_constraints(
     legs = feet.shape[-1]
     following = np.zeros(feet.shape, dtype=int)
     for leg in range(legs):
-        # The next foot on the ground around the body.
+        # The next foot on the ground, counter-clockwise around the body.
         order = [(leg + i) % legs for i in range(1, legs + 1)]
         following[:, leg] = np.asarray(order)[np.argmax(contacts[:, order], axis=-1)]
     sample, first = np.nonzero(contacts)
@@ -96,15 +98,15 @@ def fitted_shift(
     Parameters
     ----------
     phases : array, shape (k,)
-        Phase at which each edge is one of the support polygon [cycles].
+        Phase at which each edge belongs to the support polygon [cycles].
     inward : complex array, shape (k,)
-        Its inward unit normal.
+        Inward unit normal of each edge.
     distance : array, shape (k,)
-        Distance of the centre of mass inside it without a shift [m].
+        Distance of the centre of mass inside each edge without a shift [m].
     margin : float
         Stability margin [m].
     share : float
-        How far the centre of mass moves with the body, as a fraction.
+        Displacement of the centre of mass over that of the body.
 
     Returns
     -------

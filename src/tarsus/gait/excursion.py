@@ -18,12 +18,16 @@ if TYPE_CHECKING:
 
 __all__ = ["SWING_SAMPLES", "Excursions", "extreme_excursions", "walk_excursions", "walk_phases"]
 
+# Number of leg offsets sampled; swing phases sampled.
 _OFFSETS = 24
 _PHASES = np.linspace(0.0, 1.0, 49)
 # Cruising time between start and stop [cycles] beyond which no step belongs to both. In shorter walks the excursions
 # are at most 0.001 of a stroke larger (measured).
 _CRUISE = 2.0
+# Cruising times of the walks of `walk_excursions` [cycles].
 _CRUISES_OF_WALKS = (0.0, 0.75, 1.5, 2.0, 2.25)
+# Positions in stance, in strokes; weights of the length of a swing in the search for extreme positions: on a curved
+# walk, longer swings cut farther across the arc.
 _STANCE = np.linspace(-0.5, 0.5, 9)
 _INWARD = (0.0, 0.1, 0.3, 1.0)
 
@@ -124,7 +128,7 @@ def extreme_excursions(duty_factor: float, *, curved: bool) -> Excursions:
 
 @functools.lru_cache(maxsize=64)
 def walk_excursions(gait: Gait) -> Excursions:
-    """Return the foot positions ``(k, legs)`` of whole short walks, all legs at the same time.
+    """Return the foot positions ``(k, legs)`` of whole short walks, with all legs at common times.
 
     Parameters
     ----------
@@ -177,7 +181,7 @@ def _swings(duty_factor: float) -> Excursions:
 
 
 def _walk(gait: Gait, cruise: float) -> tuple[Excursions, Float[np.ndarray, "k"], Bool[np.ndarray, "k legs"]]:
-    """Return the foot positions of a walk that cruises for a number of cycles, its phases and contacts."""
+    """Return the foot positions, phases and contacts of a walk that cruises for a number of cycles."""
     steps, strokes = _walk_steps(gait, cruise)
     time = np.arange(steps.start, steps.end, (1 - gait.duty_factor) / SWING_SAMPLES)
     last, following, swing_phase, contacts = steps.at(time)

@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 
 __all__ = ["FootPlane", "fitted_plane"]
 
-# Least determinant of the feet's spread over the square of its trace; feet in a line define no plane.
+# Least determinant of the feet's second moments over the square of their trace: feet nearly in a line define no plane.
 _LEAST_SPREAD = 0.02
 
 
@@ -18,7 +18,7 @@ class FootPlane(NamedTuple):
     Attributes
     ----------
     height : float
-        At the origin [m].
+        Height at the origin [m].
     slope_x, slope_y : float
         Rise along x and y [m/m].
     """
@@ -32,19 +32,19 @@ class FootPlane(NamedTuple):
         return self.height + self.slope_x * point.real + self.slope_y * point.imag
 
     def levelled(self, tilt: tuple[float, float] | None) -> FootPlane:
-        """Return the plane through the origin as a level body sees it.
+        """Return the plane through the origin with its slopes relative to the horizontal.
 
         Parameters
         ----------
         tilt : (roll, pitch) or None
-            By how much the body is tilted [rad]; None for not at all.
+            By how much the heading frame is tilted [rad]; None for not at all.
         """
         roll, pitch = tilt or (0.0, 0.0)
         return FootPlane(0.0, math.tan(math.atan(self.slope_x) - pitch), math.tan(math.atan(self.slope_y) + roll))
 
 
 def fitted_plane(points: Sequence[complex], heights: Sequence[float], before: FootPlane, share: float) -> FootPlane:
-    """Return the plane through feet: their mean height, and a slope that follows the fitted one.
+    """Return the plane through feet: it has their mean height, and its slope follows the fitted one.
 
     Parameters
     ----------
@@ -53,7 +53,7 @@ def fitted_plane(points: Sequence[complex], heights: Sequence[float], before: Fo
     heights : sequence of float
         Their heights [m].
     before : FootPlane
-        The plane so far; its slope stays where fewer than three feet stand, or all in a line.
+        The previous plane; its slope is kept where fewer than three feet stand, or all are nearly in a line.
     share : float
         Share of the fitted slope in the new one, 0 to 1.
     """

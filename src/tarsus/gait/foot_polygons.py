@@ -20,13 +20,14 @@ NORMALS: Complex[np.ndarray, "16"] = np.exp(2j * np.pi * np.arange(_SIDES) / _SI
 NORMALS.setflags(write=False)
 
 NORMALS_CONJUGATE: Complex[np.ndarray, "16"] = NORMALS.conj()
-"""Factors with which the real part of a product is a point's coordinate along each normal."""
+"""Conjugates of `NORMALS`: the real part of their product with a point is its coordinate along each normal."""
 NORMALS_CONJUGATE.setflags(write=False)
 
+# Cosine and sine of the angle from each normal to each of them; the sine as a divisor, 1 where it is 0.
 _COSINE, _SINE = ((NORMALS_CONJUGATE[:, None] * NORMALS).view(float).reshape(_SIDES, _SIDES, 2)[..., i] for i in (0, 1))
 _SINE = np.where(np.abs(_SINE) < 1e-9, 0.0, _SINE)
 _DIVISOR = np.where(_SINE == 0, 1.0, _SINE)
-# Which sides bound a side at its clockwise end, and which at the other.
+# Added to the cuts of a side with others, so that only those count which bound its clockwise end, or its other end.
 _BEFORE, _AFTER = np.where(_SINE < 0, 0.0, -np.inf), np.where(_SINE > 0, 0.0, np.inf)
 # Tolerance for corners that lie beyond another side by rounding [m].
 _ROUNDING = 1e-12
@@ -47,7 +48,7 @@ def polygon_margin(
     Returns
     -------
     array, shape (legs, 16)
-        Distances [m]; negative where the point is outside.
+        Distances [m]; negative where the point is beyond a side.
     """
     return np.asarray(bounds - (NORMALS.conj() * inside[:, None]).real)
 

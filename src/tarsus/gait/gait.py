@@ -52,12 +52,12 @@ def _ripple(legs: int) -> _Timing:
     """Back to front on each side, the sides alternating: two legs in the air, overlapping."""
     left, right = _sides(legs)
     if legs % 2:
-        # The longer side begins, the other one half its length later.
+        # The longer side begins; the other one follows half its length later.
         late = len(left) // 2
         slots = {leg: 2 * i for i, leg in enumerate(right)}
         slots |= {leg: 2 * ((i + late) % len(left)) + 1 for i, leg in enumerate(left)}
     else:
-        # Half a cycle later, in an odd slot.
+        # The right side follows half a cycle later, in an odd slot.
         late = legs // 2 + (legs // 2 + 1) % 2
         slots = {leg: 2 * i for i, leg in enumerate(left)} | {leg: (2 * i + late) % legs for i, leg in enumerate(right)}
     return (legs - 2) / legs, _in_order({leg: slot / legs for leg, slot in slots.items()})
@@ -75,7 +75,7 @@ def _creep(legs: int) -> _Timing:
 
 
 class _Named(NamedTuple):
-    """A gait with a name: its timing for a number of legs, and the numbers of legs that it exists for."""
+    """A standard gait: its timing for a number of legs, whether it exists for that number, whether the body shifts."""
 
     timing: Callable[[int], _Timing]
     exists: Callable[[int], bool]
@@ -91,7 +91,7 @@ _NAMED = {
 }
 _ALIASES = {"amble": "tetrapod"}
 
-# Tolerance of equal phases [cycles].
+# Tolerance within which phases count as equal [cycles].
 _ROUNDING = 1e-9
 
 GAITS = tuple(_NAMED)
@@ -188,7 +188,7 @@ class Gait:
 
     @cached_property
     def beats(self) -> int:
-        """How many times per cycle feet lift off: legs that lift together count once."""
+        """Number of lift-offs per cycle; legs that lift off together count once."""
         return len(set(self.offsets))
 
     @cached_property
@@ -203,8 +203,8 @@ class Gait:
     ) -> tuple[Float[Array, "*batch legs"], Float[Array, "*batch legs"], Bool[Array, "*batch legs"]]:
         """Return the step, the phase and the contact of each leg.
 
-        At touchdown and at lift-off a foot counts as on the ground, so that rounding never leaves two feet in the air
-        of which one lifts off as the other touches down.
+        At touchdown and at lift-off a foot counts as on the ground: where one foot lifts off as another touches down,
+        rounding then never leaves both in the air.
 
         Parameters
         ----------

@@ -1,4 +1,4 @@
-"""Heights of the ground on a grid around the body, and where feet stand best on them."""
+"""Heights of the ground on a grid around the body, and the choice of better footholds on it."""
 
 from __future__ import annotations
 
@@ -20,28 +20,30 @@ if TYPE_CHECKING:
 __all__ = ["GroundHeights", "Heights", "better_foothold", "is_steep", "lowest_near", "on_way"]
 
 Heights: TypeAlias = "Callable[[Shaped[np.ndarray, '...']], Shaped[np.ndarray, '...']]"
-"""Heights of the ground at places x + iy [m]."""
+"""A function that returns the heights of the ground at places x + iy [m]."""
 
-# Where other footholds are tried, and where the ground around each is looked at [m].
+# Rings of footholds tried around the planned one: radius [m], and rotation in eighths of a turn.
 _RINGS = [(0.02, 0.0), (0.04, 0.5), (0.06, 0.0)]
+# Offsets of these footholds, the planned one first, and offsets at which the ground around each is sampled [m].
 TRIED = np.array([0j, *(cmath.rect(far, (k + turned) * math.pi / 4) for far, turned in _RINGS for k in range(8))])
 _AROUND = 0.02 * np.array([0j, 1.0, -1.0, 1j, -1j])
-# How far feet keep away from ground that is too low to stand on [m], and where that is looked for.
+# Distance that feet keep from ground too low to stand on [m]; unit offsets at which ground is sampled around a place.
 _CLEAR, _RING = 0.04, np.append(0j, np.exp(0.25j * np.pi * np.arange(8)))
-# What a metre costs: out of reach, near ground too low, off the plane of the feet, up or down an edge, away from the
-# foothold of the step.
+# Costs of a foothold per metre: height out of reach, depth of ground nearby that is too low, height off the plane of
+# the feet, difference in height to the ground around it (an edge), distance from the planned foothold.
 _OUT_OF_REACH, _NEAR_HOLE, _OFF_PLANE, _EDGE, _AWAY = 3.0, 1.0, 0.3, 0.5, 0.15
-# Room that a foot keeps to the end of its leg's reach [m].
+# Margin kept to the least height at which a foot can stand, and between foot and ground at its greatest height [m].
 _ROOM = 0.01
-# Points on the way of a foot, and how far ahead [m] ground higher by how much [m] makes it steep.
+# Fractions of a path at which the ground is sampled.
 _ALONG = np.linspace(0.0, 1.0, 9)
+# A path is steep where the ground rises by more than `_STEEP` within `_NEAR` of its start [m].
 _NEAR, _STEEP = 0.04, 0.015
 
 
 @represented("heights.shape", "cell")
 @dataclass(frozen=True, kw_only=True, eq=False)
 class GroundHeights:
-    """Heights of the ground on a grid around the body, as from a camera.
+    """Heights of the ground on a grid around the body, as obtained from a camera.
 
     The grid is level, its middle is at the origin of B, and its x axis has the body's yaw.
 
@@ -50,7 +52,7 @@ class GroundHeights:
     heights : array, shape (rows, columns)
         Heights, rows along x, columns along y, both ascending [m]; only their differences are used. NaN where unknown.
     cell : float
-        Distance of neighbouring points [m].
+        Spacing of the grid points [m].
 
     Raises
     ------
@@ -79,7 +81,7 @@ class GroundHeights:
         object.__setattr__(self, "cell", cell)
 
     def at(self, places: Shaped[np.ndarray, "..."]) -> Shaped[np.ndarray, "..."]:
-        """Return the heights at places x + iy from the middle, NaN where they are not known [m].
+        """Return the heights at the grid points nearest to places x + iy from the middle; NaN where unknown [m].
 
         Parameters
         ----------
@@ -102,18 +104,18 @@ def better_foothold(
     allowed: Bool[np.ndarray, "tried"],
     reach: tuple[float, float, float],
 ) -> complex:
-    """Return how far from its foothold a foot stands best, one of `TRIED` [m].
+    """Return the offset from its planned foothold at which a foot stands best, one of `TRIED` [m].
 
     Parameters
     ----------
     heights, level : callable
         Heights of the ground, and of the plane through the other feet.
     start, foothold : complex
-        Where the foot is, and where its step would put it down [m].
+        Where the foot is, and its planned foothold [m].
     allowed : array of bool, shape (tried,)
         Which of `TRIED` may be chosen.
     reach : (float, float, float)
-        Least and greatest height of the foot on the ground, and greatest height over it [m].
+        Least and greatest height at which the foot can stand, and greatest height to which it can be lifted [m].
     """
     lowest, highest, over = reach
     tried = TRIED[allowed]
@@ -130,7 +132,7 @@ def better_foothold(
 
 
 def lowest_near(heights: Heights, places: Shaped[np.ndarray, "..."], *, within: float) -> Shaped[np.ndarray, "..."]:
-    """Return how low the ground is at most around places [m].
+    """Return the least height of the ground at each of some places and on a circle around it [m].
 
     Parameters
     ----------
@@ -139,13 +141,13 @@ def lowest_near(heights: Heights, places: Shaped[np.ndarray, "..."], *, within: 
     places : complex array, shape (...)
         The places [m].
     within : float
-        How far around them [m].
+        Radius of the circle [m].
     """
     return np.asarray(heights(places[..., None] + within * _RING).min(axis=-1))
 
 
 def on_way(heights: Heights, start: complex, end: complex) -> Float[np.ndarray, "n"]:
-    """Return the heights of the ground at places between two [m].
+    """Return the heights of the ground along the straight line between two places [m].
 
     Parameters
     ----------
@@ -158,14 +160,14 @@ def on_way(heights: Heights, start: complex, end: complex) -> Float[np.ndarray, 
 
 
 def is_steep(heights: Heights, start: complex, end: complex) -> bool:
-    """Return whether the ground rises so soon on a way that a foot has to rise before it travels.
+    """Return whether the ground rises so soon along a path that a foot has to rise before it moves ahead.
 
     Parameters
     ----------
     heights : callable
         Heights of the ground.
     start, end : complex
-        Where the way begins and ends [m].
+        Start and end of the path [m].
     """
     near = (end - start) * min(_NEAR / max(abs(end - start), 1e-9), 1.0)
     found = heights(start + near * _ALONG)
