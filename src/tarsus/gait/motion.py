@@ -1,4 +1,4 @@
-"""A motion: body, feet and joint angles over time, and what of it is not possible."""
+"""A motion: body, feet and joint angles over time, and the reasons why it is not possible."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 __all__ = ["Motion"]
 
 
-# Change of an angle from one sample to the next, with a change of branch, above which a leg jumps [rad].
+# A leg that changes its branch jumps if one of its angles changes by more than this from a sample to the next [rad].
 _JUMP = 0.1
 
 
@@ -73,7 +73,7 @@ class Motion:
         Duration of a cycle [s]; stroke of the outermost foot [m]; its speed relative to the body while cruising [m/s],
         on a straight walk the speed of the body.
     body_height, swing_height, foot_distance : float
-        Height of the body's origin above the ground, swing height, least distance between feet allowed [m].
+        Height of the body's origin above the ground, swing height, least allowed distance between feet [m].
     assumed : tuple of str
         Assumptions where neither the caller nor the robot file gave a value.
     """
@@ -163,7 +163,7 @@ class Motion:
 
     @cached_property
     def problems(self) -> tuple[str, ...]:
-        """What is not possible, a line for each kind of problem with its first or worst sample; empty if none."""
+        """Why the motion is impossible: a line for each kind of problem with its first or worst sample; else empty."""
         return tuple(self._problems())
 
     @property

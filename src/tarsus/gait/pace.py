@@ -18,7 +18,7 @@ __all__ = ["choose_pace"]
 _FRACTION_OF_MAX_STROKE = 0.6
 _FRACTION_OF_SPEED_LIMIT = 0.5
 _CYCLE_TIME = 1.0
-# Samples of joint speed per swing, most per cycle, and the step of the differences [cycles].
+# Samples of the joint speeds per swing, and at most per cycle; time step of their differences [cycles].
 _SAMPLES_PER_SWING = 100
 _MOST_SAMPLES = 2000
 _DIFFERENCE = 1e-5

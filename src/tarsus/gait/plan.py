@@ -30,12 +30,14 @@ if TYPE_CHECKING:
 
 __all__ = ["plan_walk"]
 
+# Most samples of a motion; least travel of the outermost foot along a path [m].
 _MOST_SAMPLES = 2_000_000
 _SHORTEST_PATH = 1e-9
-# Of the number of samples in a swing.
+# Tolerance for rounding of the number of samples in a swing.
 _ROUNDING = 1e-6
+# Upper bound of the stroke [m].
 _LONGEST_STROKE = 1e3
-# Time in which a body shift begins and ends [cycles].
+# Time before the first lift-off in which a body shift sets in, and after the last touchdown in which it ends [cycles].
 _LEAD = 0.5
 
 
@@ -59,9 +61,9 @@ def plan_walk(  # noqa: PLR0913 - the options of a walk, all of them with defaul
 
     A foot that touches down at time `t` for the stance time `Ts` is placed at the rest foothold of the body's pose at
     mid-stance: ``T_ground_body(t + Ts / 2) @ rest``. The body starts and stops along smooth ramps of one cycle each.
-    With a gait that has one, the body also shifts over the feet on the ground, in a smooth and periodic way.
     Strokes are therefore symmetric about the rest footholds, those of a curved walk are arcs about its centre, distance
-    and angle of the path are exact, and the walk ends in the stance in which it started.
+    and angle of the path are exact, and the walk ends in the stance in which it started. With a gait that has a body
+    shift, the body also moves over the feet on the ground, smoothly and periodically.
 
     Parameters
     ----------
@@ -147,7 +149,7 @@ def plan_walk(  # noqa: PLR0913 - the options of a walk, all of them with defaul
 
 
 def _steps(gait: Gait, *, travel: float, stroke: float, cycle_time: float, rate: float) -> Steps:
-    """Return the steps of a walk; refuse too many samples, and a rate with swings between two samples."""
+    """Return the steps of a walk; refuse too many samples, and a rate at which swings may fall between two samples."""
     swing_time = cycle_time * (1 - gait.duty_factor)
     if swing_time * rate <= 1 + _ROUNDING:
         raise InputError(
@@ -185,13 +187,13 @@ def _sample(
     duration = steps.end - steps.start + 2 * lead
     # Rounding must not add a sample where the end falls on one.
     time = np.arange(math.ceil(duration * rate - 1e-6) + 1) / rate
-    # At the end every leg stands; a later time than the last touchdown excludes rounding.
+    # At the end every leg stands: a time well after the last touchdown, so that rounding leaves no foot in the air.
     since_start = np.where(time >= duration - lead - 1e-9, steps.end + 2 * steps.cycle_time, time - lead + steps.start)
     feet, contacts = _walk_feet(setup, path, steps, np.maximum(since_start, steps.start))
     planar_pose = path.planar_pose(steps.clock.fraction(since_start))
     if setup.gait.body_shift:
         shift = walk_shift(setup, unit_twist(setup.rest, path.displacement) * stroke)
-        # In and out while every foot is on the ground.
+        # The shift sets in and ends while every foot is on the ground.
         share = horizontal_profile(np.clip(np.minimum(time, duration - time) / lead, 0.0, 1.0))
         displacement = share * shift_at(shift, (time - lead + steps.start) / steps.cycle_time)
         planar_pose = shifted_pose(planar_pose, displacement)
@@ -216,7 +218,7 @@ def _sample(
 
 
 def _lead(setup: WalkSetup, steps: Steps) -> float:
-    """Return the time in which the body shift begins before the first lift-off, and ends after the last touchdown."""
+    """Return the time in which the body shift sets in before the first lift-off, and ends after the last touchdown."""
     return _LEAD * steps.cycle_time if setup.gait.body_shift else 0.0
 
 

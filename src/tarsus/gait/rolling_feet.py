@@ -1,4 +1,4 @@
-"""Feet of a planned walk whose balls roll on the ground while they stand."""
+"""Feet of a planned walk as balls that roll on the ground in stance."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 __all__ = ["roll_feet"]
 
-# Each pass reduces the error by the foot radius over the length of the leg; three leave less than 1 um.
+# Each pass multiplies the error by the foot radius over the length of the leg; three leave less than 1 um.
 _PASSES = 3
 
 
@@ -32,10 +32,10 @@ def roll_feet(
 ) -> tuple[Float[np.ndarray, "n legs 3"], IKSolution]:
     """Return the feet and joint angles of a walk with feet that roll without slip.
 
-    A foot is the centre of its ball. Its ball turns with the tibia and rolls, so that the foot moves a little in the
-    direction of the walk while it stands; with footholds that stay in place, the ball would drag the body along. In the
-    middle of a stance the foot is where it would be as a point; before its first step and after its last one it ends
-    in the stance.
+    A foot is the centre of its ball. The ball turns with the tibia and rolls, so that the foot moves a little in the
+    direction of the walk while it stands; if footholds stayed in place, the ball would drag the body along. In the
+    middle of a stance the foot is where it would be as a point; in the first stance it is there at the beginning, and
+    in the last one at the end.
 
     Parameters
     ----------
@@ -67,7 +67,7 @@ def roll_feet(
             offsets[:, leg] = _offsets(steps[:, leg], contacts[:, leg])
         rolled = feet + offsets
         solution = setup.solve(rolled, planar_pose)
-    # At the border of the workspace the few millimetres may be missing: there the foot slips by them.
+    # At the border of the workspace a leg may not reach these few millimetres: its foot slips by them.
     short = (np.asarray(solution.reach) != Reach.OK).any(0)
     if short.any():
         rolled = np.where(short[:, None], feet, rolled)
@@ -81,7 +81,7 @@ def _offsets(steps: Float[np.ndarray, "_ 3"], contacts: Bool[np.ndarray, "n"]) -
     stances = list(_runs(contacts))
     for start, end in stances:
         rolled = np.concatenate([np.zeros((1, 3)), np.cumsum(steps[start : end - 1], axis=0)])
-        # A walk begins and ends in the rest stance.
+        # The sample without an offset: a walk begins and ends in the rest stance.
         middle = 0 if start == 0 else end - 1 - start if end == len(contacts) else (end - start) // 2
         offsets[start:end] = rolled - rolled[middle]
     for (_, lift_off), (touchdown, _) in itertools.pairwise(stances):

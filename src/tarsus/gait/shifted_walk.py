@@ -1,4 +1,4 @@
-"""Walks with a body shift: the shift for a stroke, and what reach and stability allow with it."""
+"""Walks with a body shift: the shift for a stroke, and whether reach and stability allow that stroke."""
 
 from __future__ import annotations
 
@@ -22,12 +22,12 @@ if TYPE_CHECKING:
 
 __all__ = ["shifted_feasibility", "shifted_pose", "walk_shift"]
 
-# Stability margins for which a shift is planned, over the mean distance of the rest footholds from their centre: the
-# first with which every foot is within reach. What is left of it at all samples has to be this share.
+# Stability margins for which a shift is planned, relative to the mean distance of the rest footholds from their centre:
+# the first one that is feasible counts. Least share of that margin that must be left at every sample.
 _MARGINS, _LEAST_SHARE = (0.1, 0.05, 0.025), 0.5
-# Displacement by which the share of the centre of mass that moves with the body is found [m].
+# Displacement of the body with which the resulting displacement of the centre of mass is found [m].
 _DISPLACED = 0.01
-# Every so many samples of the walks are used, and of these as edges for the fit.
+# One in `_SAMPLED` samples of the walks is used; of those with a foot in the air, one in `_FITTED` for the fit.
 _SAMPLED, _FITTED = 2, 2
 
 
@@ -50,7 +50,7 @@ def shifted_pose(
 
 
 class _Trial(NamedTuple):
-    """All short walks with a stroke and a body shift.
+    """All short walks with one stroke and one body shift.
 
     Attributes
     ----------
@@ -59,7 +59,7 @@ class _Trial(NamedTuple):
     solution : IKSolution
         Inverse kinematics.
     feasible : array of bool, shape (legs,)
-        Which legs reach their feet without a jump; none where the robot tips over.
+        Which legs reach their feet without a jump; none where too little of the stability margin is left.
     """
 
     coefficients: Complex[np.ndarray, "7"]
@@ -86,7 +86,7 @@ def walk_shift(setup: WalkSetup, twist: Float[Array, "3"]) -> Complex[np.ndarray
 
 
 def _best_trial(setup: WalkSetup, twist: Float[np.ndarray, "3"]) -> _Trial:
-    """Return the trial with the largest stability margin that is feasible; if none is, that with the smallest."""
+    """Return the feasible trial with the largest planned margin; if none is feasible, that with the smallest."""
     phases, contacts = (values[::_SAMPLED] for values in walk_phases(setup.gait))
     sampled = Excursions(*(values[::_SAMPLED] for values in walk_excursions(setup.gait)))
     feet = sampled.feet(setup.rest, twist, setup.swing_height)
@@ -135,7 +135,7 @@ def shifted_feasibility(
     Returns
     -------
     feasible : array of bool, shape (..., legs)
-        Whether the leg does; of no leg where the robot tips over.
+        Whether each leg does; False for all legs where too little of the stability margin is left.
     solution : IKSolution
         Inverse kinematics of the feet of `walk_excursions`, with the last twist.
     """

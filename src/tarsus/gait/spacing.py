@@ -55,7 +55,7 @@ def passing_distance(
 ) -> tuple[Float[np.ndarray, "*batch n-1"], Int[np.ndarray, "*batch n-1 2"]]:
     """Return the least distance between two feet from each sample to the next, and their legs.
 
-    Feet are interpolated linearly between samples, so that fast feet that pass each other between two are found.
+    Feet are interpolated linearly between samples, so that fast feet that pass each other between samples are found.
 
     Parameters
     ----------

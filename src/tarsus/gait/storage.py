@@ -154,7 +154,7 @@ def motion_to_dataset(motion: Motion) -> xarray.Dataset:
 
 
 def labels(texts: Iterable[str]) -> Shaped[np.ndarray, "n"]:
-    """Return the labels of an axis as an array of texts of any length, since Zarr 3 specifies none of fixed length."""
+    """Return the labels of an axis as an array of variable-length strings: Zarr 3 specifies no fixed-length ones."""
     return np.array(list(texts), dtype=object)
 
 

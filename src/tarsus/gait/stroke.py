@@ -27,19 +27,19 @@ if TYPE_CHECKING:
 __all__ = ["first_failure", "leg_feasibility", "longest_stroke", "max_stroke", "steady_solution", "unit_twist"]
 
 
-# Steps in which the first infeasible stroke is searched; strokes computed together.
+# Coarse steps in the search for the first infeasible stroke; number of strokes computed together.
 _COARSE = 32
 _AT_ONCE = 8
-# Tolerance of a stroke with a body shift, which is fitted to each stroke that is tried [m].
+# Tolerance of the longest stroke with a body shift: coarse, as the shift is fitted anew to each stroke tried [m].
 _SHIFT_TOLERANCE = 2e-3
-# For maxima between the samples.
+# Factor by which the longest stroke is reduced, for maxima between the samples.
 _SAFETY = 0.998
-# Decrease of the distance between feet during start and stop, in strokes: 0.02 at most (measured).
+# Allowance for a smaller distance between feet during start and stop, in strokes: at most 0.02 is needed (measured).
 _START_AND_STOP = 0.05
 
 
 def unit_twist(rest: Float[Array, "legs 3"], direction: float | Sequence[float]) -> Float[np.ndarray, "3"]:
-    """Return the displacement of a stance ``(3,)`` per metre of stroke, for a heading [rad] or a twist of any size."""
+    """Return the displacement in a stance ``(3,)`` per metre of stroke, for a heading [rad] or a twist of any size."""
     if np.ndim(direction) == 0:
         heading = float(direction)  # type: ignore[arg-type]
         direction = (math.cos(heading), math.sin(heading), 0.0) if math.isfinite(heading) else (heading, 0.0, 0.0)
@@ -50,7 +50,7 @@ def unit_twist(rest: Float[Array, "legs 3"], direction: float | Sequence[float])
 
 
 def steady_solution(setup: WalkSetup, twist: Float[Array, "*#batch 3"], phases: Float[Array, "m"]) -> IKSolution:
-    """Return the inverse kinematics ``(..., m)`` at phases ``(m,)`` of a steady cycle; `twist` is that of a stance."""
+    """Return the inverse kinematics ``(..., m)`` at phases ``(m,)`` of a steady cycle; `twist` is per stance time."""
     feet, _ = cycle_feet(
         setup.gait, setup.rest, np.asarray(twist), swing_height=np.asarray(setup.swing_height), phases=phases
     )
@@ -79,7 +79,7 @@ def leg_feasibility(
     Returns
     -------
     feasible : array of bool, shape (..., legs)
-        Whether the leg does.
+        Whether each leg does.
     solution : IKSolution
         Inverse kinematics of the feet of `extreme_excursions`; with a body shift, of `walk_excursions`.
     """

@@ -22,7 +22,7 @@ def quintic(state: tuple[Any, Any, Any], target: Any, remaining: Any, fraction: 
     Parameters
     ----------
     state : tuple of (complex or array)
-        Position of the foot and its first and second derivative by the swing phase [m].
+        Position of the foot and its first and second derivative with respect to the swing phase [m].
     target : complex or array
         Where the swing ends [m].
     remaining : float or array

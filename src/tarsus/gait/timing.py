@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 __all__ = ["BodyClock", "Steps", "least_step_fraction", "plan_steps"]
 
-# Shortest step, as a fraction of a stroke; at most this fraction of a path is omitted for it.
+# Shortest step, as a fraction of a stroke; its upper bound, as a fraction of the path.
 _LEAST_STEP = 0.05
 _MOST_OMITTED = 0.25
 
@@ -46,7 +46,7 @@ class BodyClock:
 
     @classmethod
     def of(cls, *, rate: float, ramp: float) -> BodyClock:
-        """Fit the ramps into the path; on a path shorter than two ramps the rate is reduced.
+        """Fit the ramps into the path; where it is too short for both, the rate is reduced.
 
         Parameters
         ----------
@@ -67,7 +67,7 @@ class BodyClock:
         """Return the fraction of the path ``(...)`` at times: 0 before the start, 1 after the stop.
 
         In a ramp the speed follows the quintic ``10 s^3 - 15 s^4 + 6 s^5``. Its integral is at most half the distance
-        at cruising speed, so that no stance during start or stop exceeds half a stroke on either side.
+        covered at cruising speed, so that no stance during start or stop exceeds half a stroke on either side.
 
         Parameters
         ----------
@@ -107,7 +107,7 @@ class Steps:
     least_step : float
         Footholds closer than this fraction of the path to its start or end are placed there.
     start, end : float
-        First lift-off or start of the body, last touchdown or stop of the body [s].
+        First lift-off or start of the body, whichever is earlier; last touchdown or stop, whichever is later [s].
     """
 
     gait: Gait

@@ -1,4 +1,4 @@
-"""WalkSetup of a walk, except its path and pace: robot, gait, heights and tilt, checked and completed."""
+"""Settings of a walk except its path and pace: robot, gait, heights and tilt, checked and completed by defaults."""
 
 from __future__ import annotations
 
@@ -160,7 +160,7 @@ class WalkSetup:
         )
 
     def assumed(self, body_height: float | None, swing_height: float | None) -> list[str]:
-        """Return what neither the caller nor the robot file gives, a line for each assumption.
+        """Return the assumptions about what neither the caller nor the robot file gives, a line for each.
 
         Parameters
         ----------
