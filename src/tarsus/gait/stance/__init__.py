@@ -1,1 +1,1 @@
-"""Stances: what the footholds of a robot at rest allow, as functions of geometry."""
+"""Stances: body pose and rest footholds, and the steps and twists that they allow, as functions of geometry."""

@@ -24,9 +24,10 @@ __all__ = ["RESERVED_MARGIN", "LegMargin"]
 RESERVED_MARGIN = 0.0015
 """Distance that feet keep from where their leg fails, and knees from the ground [m]."""
 
-# Heights tested, in swing heights, and the horizontal distance from the rest foothold there over that on the ground.
+# Heights at which feet are tested, in swing heights, each with the horizontal distance from the rest foothold at that
+# height over that on the ground.
 _HEIGHTS = ((0.0, 1.0), (0.5, 0.9), (1.0, 0.4))
-# Greatest joint speed for a given foot speed, over that at the rest foothold.
+# Greatest ratio of joint speed to foot speed, relative to that at the rest foothold.
 _SPEED_RATIO = 4.0
 # Number of foot positions solved at once: larger arrays take disproportionately long.
 _BLOCK = 2600
@@ -50,10 +51,10 @@ class LegMargin:
         swing_heights = [(part * stance.swing_height, narrower) for part, narrower in _HEIGHTS]
         height, self._narrower = (np.array(column)[:, None, None] for column in zip(*swing_heights, strict=True))
         self._at_rest = to_leg_frame(g, *stance.to_body(rest.real - p[0], rest.imag - p[1], height - p[2]))
-        # Unit steps over the ground along x and y of the heading frame, and the ground's normal, in the legs' frames.
+        # Unit vectors along x and y of the heading frame, in the legs' frames.
         rows = stance.rotation[:2]
         self._along_x, self._along_y = (_in_legs(g, *row.tolist()) for row in rows)
-        # The ground's normal in B, and the height of B's origin over it.
+        # The ground's normal in B, and the height of B's origin above the ground.
         up, above = stance.rotation[2], float(stance.position[2])
         self._up = _in_legs(g, *up.tolist())
         self._rising, self._tilted = bool(rows[0][2] or rows[1][2]), bool(up[:2].any())
@@ -73,13 +74,14 @@ class LegMargin:
         Returns
         -------
         array, shape (..., legs)
-            Distance to the nearest bound: angles in [rad], reach as in `joint_margin`, knee height in [m].
+            Distance to the nearest bound: angles in [rad], reach as in `joint_margin`, knee height in [m], joint speed
+            relative to that at the rest foothold.
         """
         flat = np.ascontiguousarray(out.reshape(-1, out.shape[-1]).T)
         blocks = math.ceil(flat.shape[1] * self._g.coxa.size * len(self._no_knees) / _BLOCK)
         parts = np.array_split(flat, blocks, axis=1)
         # At each height, the knees are tested for all positions or for none, so that the result does not depend on the
-        # blocks. They are lowest far out, in the last block.
+        # blocks. Knees are lowest where feet are far out, in the last block, which therefore comes first.
         low, found = self._no_knees, []
         for part in reversed(parts):
             margin, low = self._at(part, low)

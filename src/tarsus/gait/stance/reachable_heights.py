@@ -1,4 +1,4 @@
-"""Between which heights legs reach the places of their strokes, and how much of a slope that is."""
+"""Range of heights in which legs reach the places of their strokes, and the share of a slope that it covers."""
 
 from __future__ import annotations
 
@@ -15,10 +15,10 @@ if TYPE_CHECKING:
 
 __all__ = ["STROKE_PLACES", "reachable_heights", "reachable_share"]
 
-# Places of a stroke that are looked at, from its rear end to its front end, over its length.
+# Places of a stroke that are examined, from its rear end to its front end, as fractions of its length.
 STROKE_PLACES = (-0.5, 0.0, 0.5)
 
-# Heights that are tried about the level ground, over the length of femur and tibia.
+# Heights tried, relative to level ground, over the length of femur and tibia; index of level ground.
 _TRIED = np.linspace(-0.8, 0.8, 121)
 _LEVEL = len(_TRIED) // 2
 
@@ -29,7 +29,7 @@ def reachable_heights(
     rest: Complex[np.ndarray, "*batch legs"],
     strokes: Complex[np.ndarray, "legs"],
 ) -> tuple[Float[np.ndarray, "*batch 3 legs"], Float[np.ndarray, "*batch 3 legs"]]:
-    """Return the least and the greatest height of each foot at the places of its stroke, in the heading frame [m].
+    """Return the least and greatest reachable height of each foot at the places of its stroke, in the heading frame.
 
     Both are 0 at a place that the leg does not reach on level ground.
 
@@ -64,14 +64,14 @@ def reachable_heights(
 
 
 def reachable_share(rises: Sequence[float], lowest: Sequence[float], highest: Sequence[float]) -> float:
-    """Return how much of a slope legs reach, 0 to 1: the rest of it the body has to follow.
+    """Return the share of a slope that the legs reach, 0 to 1; the body has to follow the rest.
 
     Parameters
     ----------
     rises : sequence of float
         Height of the slope at each foot, or other part of the robot, over that at the body [m].
     lowest, highest : sequence of float
-        Least and greatest height of each foot [m].
+        Least and greatest height that each foot, or other part, can have [m].
     """
     if max(rises) - min(rises) <= min(highest) - max(lowest):
         return 1.0

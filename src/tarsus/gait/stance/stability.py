@@ -21,25 +21,26 @@ if TYPE_CHECKING:
 
 __all__ = ["StabilityCheck", "safe_fraction", "support_sets"]
 
+# Factors tried, largest first; how many of them are tried one by one before the rest are bisected.
 _FRACTIONS = np.array([*np.linspace(1.0, 0.1, 10), 0.06, 0.03])
 _FIRST = 3
 
 
 @functools.lru_cache(maxsize=64)
 def support_sets(gait: Gait, excluded: tuple[int, ...] = ()) -> Bool[np.ndarray, "n legs"]:
-    """Return the sets of feet that are in stance together, at the times when fewest are.
+    """Return the minimal sets of feet that are in stance together.
 
     Parameters
     ----------
     gait : Gait
         The gait.
     excluded : tuple of int
-        Legs that do not step, and bear no load.
+        Legs that neither step nor bear load.
 
     Returns
     -------
     array of bool, shape (n, legs)
-        Minimal sets: none contains another. Where these support the robot, all sets of the gait do.
+        No set contains another. If these sets support the robot, all sets of the gait do.
     """
     after = np.asarray(gait.offsets) + gait.duty_factor + 1e-6
     down = gait.phase(after)[2]
@@ -75,7 +76,7 @@ def safe_fraction(
     margin : float
         Least stability margin [m].
     shift : complex array, shape (legs, 16), optional
-        Shift of the centre of mass by each leg at each corner of `polygon_ends` [m]; 0 if left out.
+        Shift of the centre of mass by each leg with its foot at each corner of `polygon_ends` [m]; 0 if left out.
 
     Returns
     -------
@@ -121,7 +122,7 @@ def _least_margin(
     least = (NORMALS_CONJUGATE[:, None, None] * shift).real.min(axis=-1)
     others = (least.sum(axis=-1)[:, None] - least[:, first] - least[:, second]).T
     side = np.rint(np.arctan2(inward.imag, inward.real) * (len(NORMALS) / (2 * np.pi))).astype(int)
-    # Negative indices count from the end.
+    # By the normal nearest to the inward one; negative indices count from the end.
     others = others[np.arange(len(first))[:, None, None], side]
     return float(((inward.conj() * (moved - start)).real + others).min())
 
@@ -134,7 +135,7 @@ def _edges_of(sets: bytes, legs: int) -> Float[np.ndarray, "2 n"] | None:
         down = np.flatnonzero(row).tolist()
         if len(down) < 3:
             return None
-        # Each stance foot with the next one around the body.
+        # From each stance foot to the next one, counter-clockwise around the body.
         edges.update(zip(down, down[1:] + down[:1], strict=True))
     return np.array(sorted(edges)).T
 
@@ -155,7 +156,7 @@ class StabilityCheck:
     sets : array of bool, shape (n, legs)
         Feet that are in stance together.
     excluded : tuple of int
-        Legs that do not step, whose position shifts the centre of mass.
+        Legs that do not step; `least_margin` allows for the shift of the centre of mass by their positions.
 
     Attributes
     ----------
@@ -168,7 +169,7 @@ class StabilityCheck:
     def __init__(self, robot: Robot, sets: Bool[np.ndarray, "n legs"], excluded: tuple[int, ...] = ()) -> None:
         self._robot, self._sets, self.excluded = robot, np.asarray(sets), list(excluded)
         self.least_margin = _LEAST_MARGIN
-        # Masses of the legs' points and first moment of the body, over the total mass.
+        # Masses of the leg points, and first moment of the body [m], both over the total mass.
         self._weights, self._body = np.zeros((robot.legs, 4)), np.asarray(robot.body_com)
         if robot.has_masses:
             total = total_mass(robot)
@@ -194,7 +195,7 @@ class StabilityCheck:
         centre : complex
             In the heading frame [m].
         shift : complex array, shape (legs, 16)
-            Shift by each leg at each corner of `polygon_ends` [m]; 0 for legs that do not step.
+            Shift by each leg with its foot at each corner of `polygon_ends` [m]; 0 for legs that do not step.
         """
         # First every foot at rest, then all feet at each of their corners.
         corners = polygon_ends(sides, stance.rest)[1]
@@ -204,7 +205,7 @@ class StabilityCheck:
         return centre, shift
 
     def margin_at_rest(self, stance: StanceGeometry) -> float:
-        """Return the least stability margin with the feet at rest [m]; minus infinity with less than three of them.
+        """Return the least stability margin with feet at rest [m]; minus infinity if a set has fewer than three feet.
 
         Parameters
         ----------

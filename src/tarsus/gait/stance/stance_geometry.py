@@ -46,7 +46,7 @@ class StanceGeometry(NamedTuple):
     rotation : array, shape (3, 3)
         Rotation of the body in the heading frame.
     position : array, shape (3,)
-        Of the body's origin [m].
+        Position of the body's origin [m].
     swing_height : float
         Swing height [m].
     """
@@ -102,7 +102,7 @@ def joint_margin(geometry: LegGeometry, solution: Triangle) -> Float[np.ndarray,
     Returns
     -------
     array, shape (..., legs)
-        Joint limits and knee bend in [rad], reach in squared lengths over the square of the greatest.
+        Joint limits and knee bend in [rad]; reach as a difference of squared lengths over that of the longest reach.
     """
     g, s = geometry, solution
     margin = np.minimum(s.coxa - g.coxa_lower, g.coxa_upper - s.coxa)
@@ -122,7 +122,7 @@ SWING_HEIGHT = 6
 # Axes that sway with the beats; the others sway with the cycles.
 _AXES_WITH_BEATS = np.array([1, 0, 1, 0, 1, 0])
 
-# Greatest acceleration of the feet relative to the body by its sway [m/s^2], and their distance from it [m].
+# Greatest acceleration of the feet relative to the body due to its sway [m/s^2], and their lever arm for rotations [m].
 _SWAY_ACCELERATION, _ARM = 1.5, 0.3
 
 
@@ -179,7 +179,7 @@ def with_sway(posture: Float[np.ndarray, "_"], cycles: float, beats: float) -> F
 
 
 def sway_extremes(posture: Float[np.ndarray, "7"], sway: tuple[float, ...]) -> list[Float[np.ndarray, "7"]]:
-    """Return the postures at the extremes of a sway, and the one in the middle last.
+    """Return the postures at the extremes of a sway; the last one is that in the middle.
 
     Parameters
     ----------

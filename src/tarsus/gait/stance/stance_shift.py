@@ -1,4 +1,4 @@
-"""Body shift of a stance: it keeps the robot stable wherever its feet are in their polygons."""
+"""Body shift of a stance, fitted to the feet at rest, and the phases at which stability is checked with it."""
 
 from __future__ import annotations
 
@@ -15,15 +15,16 @@ if TYPE_CHECKING:
 
 __all__ = ["stance_shift", "support_phases"]
 
+# Phases of the cycle to which the shift is fitted.
 _SAMPLES = 96
 # Phases of a swing at which the stability is examined.
 _SWING = np.array([0.0, 0.5, 1.0])
-# The part of a leg's room that the shift takes: what is left for steps, and the stability margin, are about as large.
+# Stability margin that the shift is to keep, as a share of the room of the legs; about as much is left for steps.
 _SHARE_OF_ROOM = 0.4
 
 
 def stance_shift(gait: Gait, stance: StanceGeometry, centre: complex, room: float) -> Complex[np.ndarray, "7"]:
-    """Return the coefficients of the shift with the feet at rest.
+    """Return the coefficients of the shift, fitted to the feet at rest [m].
 
     Parameters
     ----------
@@ -41,7 +42,7 @@ def stance_shift(gait: Gait, stance: StanceGeometry, centre: complex, room: floa
 
 
 def support_phases(gait: Gait) -> tuple[Float[np.ndarray, "n"], Bool[np.ndarray, "n legs"]]:
-    """Return phases at begin, middle and end of each swing, and the feet that are then on the ground.
+    """Return the phases at the beginning, middle and end of each swing, and the feet on the ground at these.
 
     Parameters
     ----------
@@ -53,7 +54,7 @@ def support_phases(gait: Gait) -> tuple[Float[np.ndarray, "n"], Bool[np.ndarray,
     phases : array, shape (n,)
         Phases [cycles].
     contacts : array of bool, shape (n, legs)
-        The feet that are on the ground just after the begin of the swing and just before its end.
+        Whether each foot is on the ground; the first and last phase are just inside the swing.
     """
     lift = np.asarray(gait.offsets)[:, None] + gait.duty_factor
     inside = 1e-6 + _SWING * (1 - gait.duty_factor - 2e-6)

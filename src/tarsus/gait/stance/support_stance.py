@@ -1,4 +1,4 @@
-"""A stance in which a gait supports the robot: the legs turned about their coxa axes, towards places of lost ones."""
+"""A stance in which a gait supports the robot: legs turned about their coxa axes towards the places of missing ones."""
 
 from __future__ import annotations
 
@@ -19,9 +19,9 @@ if TYPE_CHECKING:
 
 __all__ = ["support_stance"]
 
-# Steps of the search: the first, and that at which it ends [rad].
+# Step sizes of the search: the first, and the one at which it ends [rad].
 _FIRST_STEP, _LAST_STEP = 0.2, 0.02
-# Width of the smooth minimum, over the mean length of the legs: at kinks of a true one the search gets stuck.
+# Width of the smooth minimum, over the mean length of the legs: the search would get stuck at kinks of a true minimum.
 _SMOOTH = 0.05
 
 
@@ -30,18 +30,19 @@ def support_stance(
 ) -> Float[np.ndarray, "legs"]:
     """Return the coxa angles of a stance in which the feet that a gait leaves on the ground support the robot.
 
-    Of a robot that lacks a leg, the others move towards its place. A pattern search maximises the smooth minimum of
-    three distances: of the centre of mass from the edges of the support polygons, of the feet from the middle
-    between two of them, and of the feet from where their coxa is at its limit.
+    Where a robot lacks a leg, the others move towards its place. A pattern search maximises the smooth minimum of
+    three kinds of length: the distance of the centre of mass from the edges of the support polygons, half the excess
+    of the distance between neighbouring feet over the least one, and the distance of each foot from where its coxa is
+    at its limit.
 
     Parameters
     ----------
     robot : Robot
         A single robot.
     gait : Gait
-        The gait, for as many legs.
+        A gait for the robot's number of legs.
     body_height, swing_height : float, optional
-        Of the stance [m]; the robot's own where left out.
+        Body height and swing height of the stance [m]. Default: the robot's.
 
     Returns
     -------

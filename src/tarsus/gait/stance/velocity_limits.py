@@ -25,7 +25,7 @@ _USED_FRACTION = 0.99
 
 @dataclass(frozen=True, eq=False)
 class VelocityLimits:
-    """Polygons in which the feet may be in each of some stances, and the twists that they allow.
+    """Polygons in which the feet may be in all of one or more stances, and the twists that they allow.
 
     Attributes
     ----------
@@ -40,7 +40,7 @@ class VelocityLimits:
     stroke, turning : float
         Longest strokes that the joints are fast enough for, walking straight and turning on the spot [m].
     shift : complex array, shape (7,), or None
-        Coefficients of the body shift with which they hold; None without one [m].
+        Coefficients of the body shift with which these limits hold [m]; None without a shift.
     """
 
     bounds: Float[np.ndarray, "legs 16"]
@@ -62,7 +62,7 @@ class VelocityLimits:
         return int(self.margins.min(-1).argmin())
 
     def intersection(self, other: VelocityLimits) -> VelocityLimits:
-        """Return the limits that meet both these and others.
+        """Return the intersection of these limits with others.
 
         Parameters
         ----------
@@ -143,7 +143,7 @@ class VelocityLimits:
         turn: Float[np.ndarray, "*#batch"] | float,
         ahead: float,
     ) -> Float[np.ndarray, "... legs 16"]:
-        """Return the multiple of a twist that each side allows ``(..., legs, 16)``, for a time ahead and back [s]."""
+        """Return the multiple of a twist that each side allows ``(..., legs, 16)``, for a time ahead and behind [s]."""
         # An arc to either side of the rest foothold, to second order along and across: an upper bound, as sin x < x and
         # 1 - cos x < x^2 / 2.
         path = (straight + 1j * turn * self.rest) * ahead
@@ -187,12 +187,12 @@ def stance_overhang(duty_factor: float) -> float:
 
 
 def with_stroke_limits(limits: VelocityLimits, stroke: float, turning: float, *, duty_factor: float) -> VelocityLimits:
-    """Return the limits for joints that are not fast enough for longer strokes.
+    """Return the limits with strokes that the joints are fast enough for.
 
     Parameters
     ----------
     limits : VelocityLimits
-        Limits of the legs' reach.
+        Limits due to the legs' reach.
     stroke, turning : float
         Longest strokes walking straight and turning on the spot [m].
     duty_factor : float
