@@ -185,7 +185,7 @@ def _second_tries(
     turned = reach_codes(xp, g, away) == 0
     excluded = tibia_bend(xp, g, knee=knee) * knee > 0
     if xp is not np or excluded.any():
-        # Why a leg fails whose limits allow the other knee branch only, that branch tells.
+        # Where a leg's limits allow the other knee branch only, that branch tells why the leg fails.
         other = reach_codes(xp, g, solve_triangle(xp, g, x, y, z, knee=-knee, sideways=sideways))
         codes = xp.where(excluded, other, codes)
     miss2, *nearest = nearest_angles(xp, g, x, y, z, knee=knee, sideways=sideways)

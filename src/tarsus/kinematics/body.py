@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 __all__ = ["coxa_frames", "reachable_fraction"]
 
-# The motion is sampled in 32 steps; the first step with an unreachable foot is subdivided again, 8 times in all.
+# Steps in which a motion is sampled; rounds, each of which subdivides the step in which a foot becomes unreachable.
 _STEPS = 32
 _ROUNDS = 8
 

@@ -27,8 +27,9 @@ BODY_FRAME, GROUND_FRAME = "the body frame B", "the ground frame G"
 """Names of the frames in which targets are given."""
 
 _STEP = 1e-4  # resolution of the body height returned [m]
-_TRIES = 64
-_POINTS = 2  # most legs in a sentence with their points
+_TRIES = 64  # most coarse steps in the search for the least rise of the body
+_POINTS = 2  # most legs in a sentence that states their points
+# Attributes of a robot with an axis of legs.
 _OF_LEGS = (
     *("mount_position", "mount_yaw", "coxa", "femur", "tibia", "femur_axis_offset"),
     *("limits", "foot_radius", "link_com", "link_mass"),

@@ -34,10 +34,10 @@ _LINK_POINTS = 9
 def folded_pose(robot: Robot) -> Float[np.ndarray, "legs 3"]:
     """Return joint angles with which the legs are retracted and the belly can rest on the ground.
 
-    The coxae are straight out, as far as their limits allow. Of all femur and tibia angles with knee and foot above the
-    plane of the belly, outside the body's box, and with the legs clear of each other, the ones are chosen that minimise
-    the sum of squares of the greatest distance from the coxa axis and the greatest height over the ground. If the
-    limits keep a foot below the plane of the belly, its depth is minimised first.
+    The coxae are straight out, as far as their limits allow. Among the femur and tibia angles that keep knee and foot
+    above the plane of the belly, the tibia outside the body's box and the legs clear of each other, those are chosen
+    that minimise the sum of squares of the greatest distance from the coxa axis and the greatest height over the
+    ground. If the limits keep a foot below the plane of the belly, its depth is minimised first.
 
     Parameters
     ----------
@@ -77,7 +77,7 @@ def _folded_pose(robot: Robot) -> Float[np.ndarray, "..."]:
 
 
 def leg_clearance(robot: Robot, angles: Float[Array, "legs 3"]) -> float:
-    """Return the least distance between the femurs and tibiae of two legs [m].
+    """Return the least distance between femurs and tibiae of different legs [m].
 
     Parameters
     ----------
@@ -124,7 +124,7 @@ def _angle_grid(low: float, high: float) -> Float[np.ndarray, "n"]:
 
 
 def _outside_body(robot: Robot, points: Float[np.ndarray, "*#batch legs 4 3"]) -> Any:
-    """Return for each leg, shape (n, 4, 3), whether its tibia is outside the body's box."""
+    """Return for each set of leg points ``(n, 4, 3)`` whether the tibia is outside the body's box."""
     if robot.body_size is None:
         return np.ones(len(points), dtype=bool)
     fractions = np.linspace(0, 1, _LINK_POINTS)[:, None, None]

@@ -2,7 +2,8 @@
 
 At each body height, each leg reaches the ground in a band of distances straight out from its coxa axis. Footholds that
 are in all bands from one height to another can be kept over that motion. Where none are, the legs change their
-footholds in between, as seldom as possible: planned backwards from the end, each time as far as footholds reach.
+footholds in between, as seldom as possible: the plan goes backwards from the end, and keeps each set of footholds for
+as long as the legs reach it.
 """
 
 from __future__ import annotations
@@ -48,7 +49,7 @@ class FootholdStation(NamedTuple):
 
 
 class _Bands(NamedTuple):
-    """Ends of the bands that are reachable on the ground, and there and at swing height, for some body heights [m]."""
+    """Ends of the bands at some body heights: reachable on the ground, and both there and at swing height [m]."""
 
     heights: Float[np.ndarray, "n"]
     near: Float[np.ndarray, "n legs"]
@@ -76,7 +77,7 @@ class _Bands(NamedTuple):
     def change_at(
         self, index: int, distances: Float[np.ndarray, "legs"]
     ) -> tuple[int, Float[np.ndarray, "legs"]] | None:
-        """Return the lowest index after a change of footholds at `index`, and the new footholds; None if impossible."""
+        """Return the lowest index down to which footholds changed to at `index` can be kept, and these; else None."""
         low, high = self.near_lifted[index], self.far_lifted[index]
         if not ((distances >= low - _TOLERANCE) & (distances <= high + _TOLERANCE)).all():
             return None

@@ -1,4 +1,4 @@
-"""The ground below a pose of the body: the frame on it, and legs below it."""
+"""The ground below the body: the frame on it, and legs that are below it."""
 
 from __future__ import annotations
 

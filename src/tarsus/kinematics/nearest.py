@@ -28,6 +28,7 @@ _TURN = 2 * math.pi
 # Step sizes, in multiples of the computed correction of the coxa angle: corrections converge slowly where the target is
 # near the coxa axis. A step that increases the distance to the target is rejected.
 _STEP_SIZES = (1.0, 2.0, 6.0)
+# Most rounds of these steps; a leg is final once a round reduces the squared distance by no more than this [m^2].
 _ROUNDS = 8
 _CONVERGED = 1e-15
 

@@ -1,4 +1,4 @@
-"""Least squares of a plane through points: two unknown slopes, solved from the second moments of the points."""
+"""Least-squares fit of a plane to points: its two slopes, from the second moments of the points."""
 
 from __future__ import annotations
 
@@ -31,12 +31,12 @@ class PlanarMoments(NamedTuple):
         return self.xx * self.yy - self.xy * self.xy
 
     def span_area(self, least: float) -> Bool[Array, "*batch"]:
-        """Return whether the points are not on a line.
+        """Return whether the points span an area, rather than being on a line or nearly so.
 
         Parameters
         ----------
         least : float
-            Least determinant, relative to the square of ``xx + yy``; 0.25 where the points spread alike both ways.
+            Least determinant, relative to the square of ``xx + yy``; 0.25 for a spread equal in all directions.
 
         Returns
         -------

@@ -62,7 +62,7 @@ def _require_rotation(xp: Namespace, rotation: Float[Array, "*batch 3 3"]) -> No
         )
 
 
-# Largest deviation of determinant and squared norm, for single precision too.
+# Largest deviation of determinant and squared norm of a rotation matrix, in single precision too.
 _TOLERANCE = 1e-4
 
 _IDENTITY = _locked(np.eye(3))

@@ -56,7 +56,7 @@ def reach_codes(xp: Namespace, geometry: LegGeometry, solution: Triangle) -> Int
     for angle, lower, upper, code in limits:
         violated = (angle < lower - ANGLE_TOLERANCE) | (angle > upper + ANGLE_TOLERANCE)
         codes = mark(xp, codes, violated, code)
-    # An error of the tolerance in a distance is twice the tolerance times that distance in its square.
+    # An error in a distance changes its square by twice the error times the distance.
     tolerance = 2 * LENGTH_TOLERANCE
     codes = mark(xp, codes, solution.near < -tolerance * xp.abs(g.femur - g.tibia), Reach.TOO_NEAR)
     codes = mark(xp, codes, solution.far < -tolerance * (g.femur + g.tibia), Reach.TOO_FAR)

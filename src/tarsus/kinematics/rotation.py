@@ -11,7 +11,7 @@ if TYPE_CHECKING:
 
 __all__ = ["axis_and_angle", "levelling_rotation", "rotation_about"]
 
-# The axis of a smaller rotation is undefined by rounding: the sine of its angle.
+# Sine of the angle of a rotation below which its axis is undefined, due to rounding.
 _LEAST_SINE = 1e-12
 
 
@@ -34,7 +34,7 @@ def rotation_about(
 
 
 def axis_and_angle(rotation: Float[np.ndarray, "3 3"]) -> tuple[Float[np.ndarray, "3"], float]:
-    """Return the axis of a rotation, and the angle about it, less than half a turn [rad]; 0 and no axis without one.
+    """Return the axis of a rotation by less than half a turn, and the angle about it [rad]; both 0 without a rotation.
 
     Parameters
     ----------

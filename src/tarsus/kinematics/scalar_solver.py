@@ -15,12 +15,12 @@ if TYPE_CHECKING:
 
 __all__ = ["ScalarSolver"]
 
-# The body's own frame B: rows of the rotation, and position [m].
+# Pose of the body in its own frame B: rows of the rotation, and position [m].
 _IN_BODY = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)), (0.0, 0.0, 0.0)
 
 
 class ScalarSolver:
-    """Inverse kinematics of the legs of one robot, knee up, and where its feet are.
+    """Inverse kinematics of the legs of one robot, knee up, and forward kinematics of its feet.
 
     Parameters
     ----------

@@ -32,8 +32,8 @@ __all__ = [
 def default_body_height(robot: Robot) -> Float[Array, "..."]:
     """Return the default height of the body's origin above the ground [m].
 
-    That of the robot file; else the least height of all legs with a vertical tibia and the femur at 30 deg, but at
-    least half the tibia below the femur axis.
+    That of the robot file; else the least over all legs of the height with a vertical tibia and the femur 30 deg
+    above the horizontal, but with the femur axis at least half the length of the tibia above the ground.
 
     Parameters
     ----------
@@ -237,7 +237,7 @@ def footholds_straight_out(
     robot : Robot
         The robot, or a batch of designs.
     distances : array, shape (..., legs)
-        Distances as of `foothold_distances` [m].
+        Distances as `foothold_distances` returns them [m].
     height : array, shape (...)
         Height of the feet in B [m].
 

@@ -102,7 +102,7 @@ def joint_margin(geometry: LegGeometry, solution: Triangle) -> Float[np.ndarray,
     Returns
     -------
     array, shape (..., legs)
-        Joint limits and knee bend in [rad]; reach as a difference of squared lengths over that of the longest reach.
+        Joint limits and knee bend in [rad]; reach in squared lengths over the square of the longest reach.
     """
     g, s = geometry, solution
     margin = np.minimum(s.coxa - g.coxa_lower, g.coxa_upper - s.coxa)

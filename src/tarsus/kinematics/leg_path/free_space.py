@@ -108,7 +108,7 @@ class LegFreeSpace:
         return heights
 
     def is_free(self, start: Float[np.ndarray, "3"], end: Float[np.ndarray, "3"]) -> bool:
-        """Return whether a straight path is free, and whether a foot on the ground at either end lifts off steeply.
+        """Return whether a straight path is free, and a foot on the ground at either end leaves it steeply.
 
         Parameters
         ----------
