@@ -20,8 +20,8 @@ _HARMONICS = 3
 COEFFICIENTS = 2 * _HARMONICS + 1
 """Number of complex coefficients of a body shift: its mean, then a cosine and a sine of each harmonic."""
 
-# Cost weights: of the squared mean and the squared harmonics, which grow with the square of their acceleration (h^2);
-# and of squared violations of the margin.
+# Cost weights: of the squares of the mean and of the harmonics, the latter by the square of their acceleration; of the
+# squared violations of the margin.
 _WEIGHTS = np.array([0.1, *(0.1 + h**4 for h in range(1, _HARMONICS + 1) for _ in range(2))])
 _PENALTY = 1e4
 # Newton's method: most iterations, step sizes tried, and least relative decrease of the cost in a step.
