@@ -1,4 +1,4 @@
-"""Physics: a robot in MuJoCo, with actuators after real servos, terrain and sensors.
+"""Physics: a robot in MuJoCo, with actuators modelled on real servos, terrain and sensors.
 
 ::
 
@@ -74,7 +74,7 @@ __all__ = [
 
 
 def __getattr__(name: str) -> Any:
-    """Import a public name from where it lives."""
+    """Import a public name from its module."""
     if name in ("environment", "terrain"):
         return import_module(f"tarsus.simulation.{name}")
     if name not in _HOMES:

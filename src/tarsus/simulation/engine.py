@@ -34,7 +34,7 @@ def mujoco_module() -> Any:
 
 
 def engine_problem() -> str | None:
-    """Return why there is no physics, and what to install; None if there is."""
+    """Return why physics is not available, and what to install; None if it is available."""
     try:
         mujoco_module()
     except TarsusError as error:

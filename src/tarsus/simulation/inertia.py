@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 __all__ = ["BODY_HEIGHT", "SECTION", "RigidBody", "body_inertia", "link_inertia", "link_step"]
 
 SECTION = 0.025
-"""Section of a link, for its inertia: that of a servo and its bracket [m]."""
+"""Width and height of the box that stands for a link in its inertia: those of a servo and its bracket [m]."""
 
 BODY_HEIGHT = 0.05
 """Height of a body whose size is unknown, for its inertia [m]."""
@@ -32,7 +32,8 @@ class RigidBody(NamedTuple):
     moments : tuple of float
         Principal moments of inertia about it, the first along `axis` [kg m^2].
     axis : array, shape (3,)
-        Direction of the first principal axis; zero where all moments are equal, or the axes are those of the frame.
+        Direction of the first principal axis; zero where all moments are equal, or the principal axes are those of the
+        frame.
     """
 
     mass: float
@@ -57,14 +58,14 @@ def link_step(robot: Robot, leg: int, joint: int) -> Float[np.ndarray, "3"]:
     robot : Robot
         A single robot.
     leg, joint : int
-        Which link: that behind the joint.
+        Which link: the one that the joint moves.
     """
     side, up = np.asarray(robot.femur_axis_offset[leg]).tolist() if joint == 0 else (0.0, 0.0)
     return np.array([float(getattr(robot, JOINTS[joint])[leg]), side, up])
 
 
 def body_inertia(robot: Robot) -> RigidBody:
-    """Return mass and inertia of the body: a uniform box of its size, or around the coxa axes.
+    """Return mass and inertia of the body: a uniform box of its size, or around the coxa axes where that is unknown.
 
     Parameters
     ----------
@@ -86,7 +87,7 @@ def link_inertia(robot: Robot, leg: int, joint: int) -> RigidBody:
     robot : Robot
         A single robot with masses.
     leg, joint : int
-        Which link: that behind the joint.
+        Which link: the one that the joint moves.
     """
     step = link_step(robot, leg, joint)
     length = float(np.linalg.norm(step))

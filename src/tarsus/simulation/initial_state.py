@@ -24,9 +24,9 @@ if TYPE_CHECKING:
 __all__ = ["check_stability", "place"]
 
 
-# Penetration of the terrain at which a robot starts inside it [m].
+# Penetration beyond which a robot counts as inside the terrain at the start [m].
 _INSIDE = 0.003
-# Greatest (timestep * frequency)^2 of servo springs; explicit integration becomes unstable at 4.
+# Greatest (timestep * angular frequency)^2 of servo springs; explicit integration becomes unstable at 4.
 _STIFFEST = 1.0
 
 
@@ -70,7 +70,7 @@ def place(robot: Robot, terrain: Terrain, output: ControlOutput, model: Any, dat
 def _lowest_points(
     robot: Robot, output: ControlOutput, model: Any
 ) -> tuple[Shaped[np.ndarray, "..."], Shaped[np.ndarray, "..."]]:
-    """Return the points in G that may touch the ground ``(n, 3)``, and their radii ``(n,)``; feet, or all parts."""
+    """Return points in G that may touch the ground ``(n, 3)``, and their radii ``(n,)``: feet; on the belly, all."""
     legs = np.asarray(output.body @ forward_kinematics(robot, output.angles))
     names = [f"{name} foot" for name in robot.leg_names]
     radii = np.array([model.geom(name).size[0] for name in names])
@@ -82,7 +82,7 @@ def _lowest_points(
 
 
 def _lift(terrain: Terrain, points: Shaped[np.ndarray, "..."], radii: Shaped[np.ndarray, "..."]) -> float:
-    """Return by how much to raise the robot so that balls around its points are nowhere below the ground [m]."""
+    """Return how far to raise the robot so that no ball around its points is below the ground [m]."""
     around = np.linspace(0, 2 * math.pi, 8, endpoint=False)
     ring = np.concatenate([np.zeros((1, 2)), np.stack([np.cos(around), np.sin(around)], axis=-1)])
     places = points[:, None, :2] + radii[:, None, None] * ring
@@ -107,7 +107,8 @@ def check_stability(table: ServoTable, model: Any, data: Any) -> None:
 
     Notes
     -----
-    The greatest eigenvalue of ``M^-1 K`` is the square of the highest frequency that the servos make with the inertias.
+    The greatest eigenvalue of ``M^-1 K`` is the square of the highest angular frequency at which the robot's inertias
+    vibrate on the springs of the servos.
     """
     inverse = np.empty((model.nv, model.nv))
     mujoco_module().mj_solveM(model, data, inverse, np.eye(model.nv))

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 __all__ = ["Measurement"]
 
 _ONES = np.ones(3)
-# The points around the body at which a sensor measures the ground [m].
+# Points around the body at which the ground is measured [m]: along each axis; the grid, as x + iy.
 _REACH = np.linspace(-0.6, 0.6, 61)
 _AROUND = _REACH[:, None] + 1j * _REACH
 
@@ -33,14 +33,14 @@ class Measurement:
     model : mujoco.MjModel
         Its model.
     data : mujoco.MjData
-        The state; what is returned refers to its present content.
+        The state; all methods read its present content.
     """
 
     def __init__(self, robot: Robot, model: Any, data: Any) -> None:
         self._mujoco, self._model, self._data = mujoco_module(), model, data
         self._legs = robot.legs
         self._leg_of = {model.geom(foot_geom_name(robot, leg)).id: leg for leg in range(robot.legs)}
-        # Looking an array up in the engine's data takes longer than reading it.
+        # Views are kept, as looking an array up in the engine's data takes longer than reading it.
         self._orientation, self._before, self._rates = data.qpos[3:7], np.zeros(4), np.zeros(3)
         found = data.sensordata[: 3 * robot.legs + 1]
         self._foot_forces, self._body_contact = found[:-1].reshape(robot.legs, 3), found[-1:]
@@ -59,7 +59,7 @@ class Measurement:
 
     def foot_forces(self) -> Float[np.ndarray, "legs 3"]:
         """Return the forces of the ground on the feet in G, ``(legs, 3)`` [N]."""
-        # The sensor has the force of the foot on the ground.
+        # The sensor gives the force of the foot on the ground.
         forces: np.ndarray = np.negative(self._foot_forces)
         return forces
 
@@ -98,13 +98,13 @@ class Measurement:
     def turned(self, time: float = 0.0) -> None:
         """Take note of how B has turned since the last call.
 
-        Commands come in steps, and stiff servos turn the body in jerks: its velocity at the end of a tick is
-        systematically less than what it has turned by. What measures angular rates averages them.
+        Commands change in steps, and stiff servos turn the body in jerks: its angular velocity at the end of a tick is
+        systematically less than the mean over the tick, which a sensor of angular rates measures.
 
         Parameters
         ----------
         time : float
-            Time since the last call [s]; 0 for a body at rest.
+            Time since the last call [s]; 0 at the start, for a body at rest.
         """
         if time:
             self._mujoco.mju_subQuat(self._rates, self._orientation, self._before)
@@ -112,7 +112,7 @@ class Measurement:
         self._before[:] = self._orientation
 
     def angular_rates(self) -> Float[np.ndarray, "3"]:
-        """Return the mean angular velocity of B along its own axes, as it was noted last, ``(3,)`` [rad/s]."""
+        """Return the mean angular velocity of B between the last calls of `turned`, in its axes, ``(3,)`` [rad/s]."""
         return self._rates.copy()
 
     def ground_heights(self, terrain: Terrain) -> Float[np.ndarray, "rows columns"]:

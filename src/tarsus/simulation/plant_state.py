@@ -1,4 +1,4 @@
-"""What a simulated robot does, exactly."""
+"""The exact state of a simulated robot."""
 
 from __future__ import annotations
 
@@ -17,24 +17,25 @@ __all__ = ["PlantState"]
 
 @represented()
 class PlantState(NamedTuple):
-    """What a simulated robot does, exactly.
+    """The exact state of a simulated robot.
 
     Attributes
     ----------
     time : float
-        Since the start [s].
+        Time since the start [s].
     body : Pose
         Pose of B in G.
     joint_angles, joint_speeds : array, shape (legs, 3)
-        Of the joints [rad, rad/s].
+        Angles and speeds of the joints [rad, rad/s].
     torques : array, shape (legs, 3)
-        Of the servos in the last physics step; with `SimulatedPlant.average_torques`, means over the last tick [N m].
+        Torques of the servos in the last physics step; means over the last tick with `SimulatedPlant.average_torques`
+        [N m].
     saturated : array of bool, shape (legs, 3)
         Whether the servos gave all the torque that they can at their speed.
     foot_forces : array, shape (legs, 3)
-        Of the ground on the feet in the last physics step, in G [N].
+        Forces of the ground on the feet in the last physics step, in G [N].
     slip_speeds : array, shape (legs,)
-        Of the feet's contact points over the ground; 0 for a foot that rolls, or is in the air [m/s].
+        Speeds of the feet's contact points over the ground; 0 for a foot that rolls, or is in the air [m/s].
     body_touches : bool
         Whether the body is in contact with the ground.
     """

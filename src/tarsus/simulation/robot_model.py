@@ -41,16 +41,16 @@ __all__ = [
 FLOOR_OF_MASS = 1e-4
 """Least mass of a body or link that can be simulated [kg]."""
 
-# Radius of point feet on other than flat ground [m]: a greater ball rolls on, which no plan for point feet makes up
-# for; a smaller one that is pressed into uneven ground by more than its radius is held there.
+# Radius of point feet on ground that is not flat [m]: a larger ball would roll, which plans for point feet do not
+# compensate for; a smaller one could be pressed into uneven ground by more than its radius, and would be stuck there.
 _POINT_FOOT_UNEVEN = 0.003
-# Greatest radius of the links' contact geometry, and its ratio to the foot radius.
+# Radius of the links' contact capsules: at most this [m], and at most this fraction of the foot radius.
 _LINK_RADIUS, _LINK_RATIO = 0.006, 0.75
 # Half the thickness of a body that is the polygon of its coxa axes [m].
 _HALF_PLATE = 0.001
-# Links shorter than this have no contact geometry [m]; a joint that is fixed gets this range [rad].
+# Links shorter than this have no contact geometry [m]; a joint with equal limits gets this range [rad].
 _SHORT, _FIXED = 1e-4, 1e-6
-# Content and reduction of contact sensors, in the engine's numbers: bits of found and force; sum of the forces.
+# The engine's codes for contact sensors: the bits that select `found` and `force`, and reduction to the net force.
 _FOUND, _FORCE, _NET_FORCE = 1, 2, 3
 _ROBOT_COLOUR, _FOOT_COLOUR = (0.30, 0.45, 0.65, 1.0), (0.15, 0.15, 0.15, 1.0)
 
@@ -90,12 +90,12 @@ def model(robot: Robot, *, terrain: Terrain | None = None, servos: Any = "catalo
     Returns
     -------
     mujoco.MjSpec
-        The model, which ``compile()`` turns into a ``mujoco.MjModel``. It can be changed before.
+        The model, which ``compile()`` turns into a ``mujoco.MjModel``. It can be changed before that.
 
     Raises
     ------
     MissingDataError
-        If the mass of the body or of a link is unknown, or a servo for ``"catalogue"``.
+        If the mass of the body or of a link is unknown; with ``"catalogue"``, also if a servo is.
     InputError
         If the robot is a batch, or a mass is too small to be simulated.
     TarsusError
@@ -122,7 +122,7 @@ def passive_model(robot: Robot, *, terrain: Terrain | None = None, servos: Any =
 
 
 def _bodies(robot: Robot, terrain: Terrain | None, table: ServoTable, *, damping: list[list[float]]) -> Any:
-    """Return terrain, body and legs, with the damping of each joint [N m s/rad]."""
+    """Return a model of terrain, body and legs, whose joints have the given damping [N m s/rad]."""
     spec = mujoco_module().MjSpec()
     spec.modelname = robot.name
     spec.compiler.degree = False
@@ -205,7 +205,7 @@ def _add_body(spec: Any, robot: Robot) -> Any:
 
 
 def _robot_geom() -> dict[str, Any]:
-    """Return the attributes of the robot's geoms: without mass, in contact with the terrain alone."""
+    """Return the attributes of the robot's geoms: no mass, contact with the terrain only."""
     return {"mass": 0.0, "contype": 0, "conaffinity": 1, "rgba": _ROBOT_COLOUR}
 
 
@@ -236,14 +236,14 @@ def _add_leg(body: Any, robot: Robot, leg: int, table: ServoTable, damping: list
 
 
 def _add_sensors(spec: Any, robot: Robot) -> None:
-    """Add a sensor of the ground's force on each foot, in G, with the opposite sign, and one of the body's contacts."""
+    """Add a sensor of each foot's force on the ground, in G, and one that tells whether the body is in contact."""
     kinds = mujoco_module().mjtSensor
     names = [foot_geom_name(robot, leg) for leg in range(robot.legs)]
     for name, content in [*((name, _FORCE) for name in names), (body_geom_name(), _FOUND)]:
         sensor = spec.add_sensor(
             name=name, type=kinds.mjSENS_CONTACT, objtype=mujoco_module().mjtObj.mjOBJ_GEOM, objname=name
         )
-        # What is measured, of the sum of all contacts, once.
+        # Quantity, reduction over all contacts, and number of results.
         sensor.intprm[:3] = content, _NET_FORCE, 1
 
 
@@ -259,7 +259,7 @@ def _inertia(robot: Robot, leg: int, joint: int) -> dict[str, Any]:
 
 
 def _quaternion_from_x(direction: Shaped[np.ndarray, "..."]) -> Shaped[np.ndarray, "..."]:
-    """Return the quaternion of the shortest rotation from x to a unit vector; none for the zero vector."""
+    """Return the quaternion of the shortest rotation from x to a unit vector; no rotation for the zero vector."""
     if not direction.any():
         return np.array([1.0, 0.0, 0.0, 0.0])
     x, y, z = direction
@@ -301,7 +301,7 @@ def _add_link_geom(body: Any, robot: Robot, place: tuple[int, int], step: Shaped
 
 
 def _with_feet(robot: Robot, ground: Terrain) -> Robot:
-    """Return the robot with the radii that its feet have on a terrain."""
+    """Return the robot with the foot radii that are simulated on a terrain."""
     point = POINT_FOOT if isinstance(ground, Flat) else _POINT_FOOT_UNEVEN
     radii = [require_number("foot_radius", radius, zero=True) for radius in np.asarray(robot.foot_radius).tolist()]
     return robot.replace(foot_radius=[radius or point for radius in radii])

@@ -10,7 +10,7 @@ __all__ = ["require_seed"]
 
 
 def require_seed(seed: int) -> int:
-    """Return a seed.
+    """Return a seed as a plain integer, or refuse it.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Settings of the physics engine, which were measured to hold for legged robots of 0.5 to 5 kg."""
+"""Settings of the physics engine, found by measurement to suit legged robots of 0.5 to 5 kg."""
 
 from __future__ import annotations
 
@@ -17,7 +17,8 @@ FRICTION = 0.8
 SOLREF = (0.01, 1.0)
 """Time constant [s] and damping ratio of the contacts."""
 
-# Ratio of the frictional to the normal constraint impedance: friction creeps with about 0.23 s times this number.
+# Ratio of the frictional to the normal constraint impedance; the creep time of friction, which `FootContact` explains,
+# is about 0.02 s times this number.
 _IMPRATIO = 10.0
 _GRAVITY = 9.80665
 
@@ -38,5 +39,5 @@ def apply_settings(spec: Any) -> None:
     option.solver = mujoco.mjtSolver.mjSOL_NEWTON
     option.cone = mujoco.mjtCone.mjCONE_ELLIPTIC
     option.impratio = _IMPRATIO
-    # A simulation that becomes unstable is reported; the engine would start again from its initial state.
+    # The plant reports a simulation that becomes unstable; by default the engine would reset it to its initial state.
     option.disableflags |= int(mujoco.mjtDisableBit.mjDSBL_AUTORESET)

@@ -37,12 +37,12 @@ if TYPE_CHECKING:
 __all__ = ["SimulatedPlant"]
 
 
-# Settling ends when nothing moves faster than this [m/s, rad/s], or after the longest time [s].
+# Settling ends when nothing moves faster than this [m/s, rad/s], at the latest after this time [s].
 _AT_REST, _LONGEST_SETTLING = 2e-3, 3.0
-_SETTLING_CHECK = 25  # steps
-# A tick of a controller takes milliseconds; far longer ones overflow the number of steps [s].
+_SETTLING_CHECK = 25  # physics steps from one check to the next
+# Longest tick [s]: those of controllers last milliseconds; far longer ones would overflow the number of steps.
 _LONGEST_TICK = 60.0
-# A simulation in which anything is faster than this is unstable [m/s, rad/s].
+# Norm of all speeds together from which on the simulation counts as unstable [m/s, rad/s].
 _UNSTABLE = 1e3
 
 
@@ -77,12 +77,12 @@ class SimulatedPlant:
     assumed : tuple of str
         What the model and the servos assume, a line each.
     mj_model, mj_data : mujoco.MjModel, mujoco.MjData
-        Model and state in the engine, for viewers and for what has no method here.
+        Model and state in the engine, for viewers, and for values that have no method here.
 
     Raises
     ------
     MissingDataError
-        If the mass of the body or of a link is unknown, or a servo for ``"catalogue"``.
+        If the mass of the body or of a link is unknown; with ``"catalogue"``, also if a servo is.
     InputError
         If the robot is a batch, a mass is too small to be simulated, no foot switch would close under the robot's
         weight, or the seed is not a whole number from 0 on.
@@ -114,7 +114,7 @@ class SimulatedPlant:
         _require_switches_that_close(self.sensors, robot)
         self.mj_data = self._mujoco.MjData(self.mj_model)
         data, joints = self.mj_data, 3 * robot.legs
-        # Looking an array up in the engine's data takes longer than reading it.
+        # Views are kept, as looking an array up in the engine's data takes longer than reading it.
         self._angles, self._speeds, self._all_speeds = data.qpos[7:], data.qvel[6:], data.qvel
         self._targets = data.ctrl.reshape(joints, len(ACTUATORS))
         self._servo_torques, self._back_emf = data.qfrc_actuator[6:], data.actuator_force[2 :: len(ACTUATORS)]
@@ -130,9 +130,9 @@ class SimulatedPlant:
     def average_torques(self) -> None:
         """From now on, give torques as means over a tick instead of those of its last physics step.
 
-        Commands come in steps. After each, damped servos first give more torque than the motion needs and then less, so
-        that the last value of a tick is systematically wrong for what the joints bear. Averaging takes about a tenth
-        more time.
+        Commands change in steps. After each step, damped servos first give more torque than the motion needs and then
+        less, so that the last value of a tick differs systematically from the torque that the joints bear. Averaging
+        takes about a tenth more time.
         """
         self._sum_of_drives = np.zeros(3 * self.robot.legs)
 
@@ -178,7 +178,7 @@ class SimulatedPlant:
         output : ControlOutput
             What the controller gave out.
         dt : float
-            Duration of the tick [s]; physics takes as many steps as fit until the tick's end, to the nearest.
+            Duration of the tick [s]; physics steps to the tick's end, rounded to a whole number of steps.
 
         Raises
         ------
@@ -216,7 +216,7 @@ class SimulatedPlant:
 
     @property
     def readings(self) -> SensorReadings:
-        """What is measured at the start; afterwards the last readings are those that `step` returned.
+        """The readings at the start; `step` returns all later ones.
 
         Raises
         ------
@@ -244,7 +244,7 @@ class SimulatedPlant:
 
     @property
     def state(self) -> PlantState:
-        """What the robot does, exactly; a copy."""
+        """The exact state of the robot; a copy."""
         data, shape = self.mj_data, (self.robot.legs, 3)
         return PlantState(
             time=self._time,
@@ -285,26 +285,26 @@ class SimulatedPlant:
             )
 
     def _average(self, total: Float[np.ndarray, "joints"], steps: int) -> None:
-        """Take physics steps, and add up the torques without what damps them."""
+        """Take physics steps, and add the servos' torques before damping to a total."""
         for _ in range(steps):
             self._mujoco.mj_step(self.mj_model, self.mj_data)
             total += self._servo_torques
             total -= self._back_emf
 
     def _drives(self) -> Float[np.ndarray, "joints"]:
-        """Return the servos' torques without what damps them in the last physics step ``(joints,)`` [N m]."""
+        """Return the servos' torques before damping in the last physics step, ``(joints,)`` [N m]."""
         drives: np.ndarray = self._servo_torques - self._back_emf
         return drives
 
     def _torques(self) -> Float[np.ndarray, "legs 3"]:
-        """Return the servos' torques in the last physics step, or their means ``(legs, 3)`` [N m]."""
+        """Return the servos' torques in the last physics step, or their means over a tick ``(legs, 3)`` [N m]."""
         if self._sum_of_drives is not None:
             return self._mean_torques.reshape(self.robot.legs, 3).copy()
         # The implicit integrator damps by the speed at the end of the step.
         return np.asarray(self._drives() - self._table.damping * self._speeds).reshape(self.robot.legs, 3)
 
     def _channels(self) -> dict[str, Callable[[], Any]]:
-        """Return what gives the exact value of each channel of the sensor suite; it may be a view."""
+        """Return a function for each channel of the sensor suite that gives its exact value, which may be a view."""
         measurement, shape = self._measurement, (self.robot.legs, 3)
         angles, speeds, currents = self._angles.reshape(shape), self._speeds.reshape(shape), self._stall_currents
         channels: dict[str, Callable[[], Any]] = {
@@ -327,7 +327,7 @@ class SimulatedPlant:
 
 
 def _checked(angles: Shaped[np.ndarray, "..."], legs: int) -> Shaped[np.ndarray, "..."]:
-    """Return joint angles in one axis, refusing what is not finite."""
+    """Return joint angles in one axis; refuse another shape and angles that are not finite."""
     given = np.array(angles, dtype=float)
     if given.shape != (legs, 3):
         raise InputError(f"the commanded angles have shape {given.shape}; expected ({legs}, 3)")
@@ -349,7 +349,7 @@ def _require_switches_that_close(sensors: SensorSuite, robot: Robot) -> None:
 
 
 def _stall_currents(robot: Robot) -> Float[np.ndarray, "legs 3"] | None:
-    """Return current over torque of every servo ``(legs, 3)`` [A/(N m)]; None if one is unknown."""
+    """Return stall current over stall torque of every servo ``(legs, 3)`` [A/(N m)]; None if one is unknown."""
     rows = [
         [s.stall_current / s.stall_torque if s and s.stall_current else math.nan for s in row] for row in robot.servos
     ]
