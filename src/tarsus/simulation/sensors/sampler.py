@@ -15,9 +15,9 @@ from tarsus.simulation.sensors.suite import CHANNELS, FootSwitch, Sampling, Sens
 
 __all__ = ["Sampler"]
 
-# Rounding of sums of tick times [s].
+# Tolerance for the rounding errors of sums of tick times [s].
 _SAME_TIME = 1e-9
-# How many random numbers of a kind are drawn at a time.
+# How many measurements' random numbers of a kind are drawn at a time.
 _BLOCK = 256
 
 
@@ -29,8 +29,8 @@ class Sampler:
     suite : SensorSuite
         The sensors.
     exact : mapping of str to array
-        Exact values at the start, by channel, or functions that return them as they are measured; what is not in it
-        is not measured.
+        Exact values at the start, by channel, or functions that return them when they are measured; a channel that
+        is not in it is not measured.
     seed : int
         Seed of noise, bias, drop-outs and flips.
     """
@@ -68,7 +68,7 @@ class Sampler:
 
 
 class _Channel:
-    """One channel: its random errors, and the measurements on their way."""
+    """One channel: its random errors, and the measurements that are taken but still delayed."""
 
     def __init__(self, name: str, sensor: Sensor | FootSwitch, exact: Any, random: np.random.Generator) -> None:
         self.name = name
@@ -85,7 +85,7 @@ class _Channel:
         """Take a measurement, unless it is not due yet or is lost; return the newest that has arrived, and its age."""
         waiting = self._waiting
         if time - self._taken >= self._period - _SAME_TIME:
-            # Times of measurements do not add up what a tick is late.
+            # Measurements keep to their period: that a tick comes late does not delay those after it.
             self._taken = max(self._taken + self._period, time - self._period)
             if self._lost is None or not next(self._lost):
                 waiting.append((time, self._disturbed(exact)))
@@ -108,7 +108,7 @@ class _Channel:
 
 
 def _errors(sensor: Sensor | FootSwitch, shape: tuple[int, ...], random: np.random.Generator) -> Iterator[Any] | None:
-    """Return the errors of one measurement after the other, drawn many at a time; None without any."""
+    """Return an iterator over the errors of successive measurements, drawn many at a time; None if there are none."""
     if isinstance(sensor, FootSwitch):
         return _one_by_one(lambda: random.random((_BLOCK, *shape)) < sensor.flips) if sensor.flips else None
     bias = random.normal(0.0, sensor.bias, shape) if sensor.bias else np.zeros(shape)
@@ -118,7 +118,7 @@ def _errors(sensor: Sensor | FootSwitch, shape: tuple[int, ...], random: np.rand
 
 
 def _losses(sensor: Sampling, random: np.random.Generator) -> Iterator[bool] | None:
-    """Return whether one measurement after the other is lost; None if none ever is."""
+    """Return an iterator that tells of successive measurements whether they are lost; None if none ever is."""
     return _one_by_one(lambda: random.random(_BLOCK) < sensor.dropout) if sensor.dropout else None
 
 

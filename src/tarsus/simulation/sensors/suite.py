@@ -21,9 +21,9 @@ class Sampling:
     Attributes
     ----------
     delay : float
-        From the measurement to the reading [s].
+        Time from the measurement to the reading [s].
     rate : float
-        Measurements per second [1/s]; infinite for one each tick.
+        Measurements per second [1/s]; infinite for one in each tick.
     dropout : float
         Probability that a measurement is lost; the last reading is then given again, with its age.
     """
@@ -42,14 +42,14 @@ class Sampling:
 
 @dataclass(frozen=True, kw_only=True)
 class Sensor(Sampling):
-    """What is wrong with a channel's numbers, in the units of the channel.
+    """A sensor of numbers, with the errors of its measurements in the units of the channel.
 
     Attributes
     ----------
     noise : float
-        Standard deviation of each measurement.
+        Standard deviation of the error of each measurement.
     bias : float
-        Standard deviation of the constant error that each element has throughout a run.
+        Standard deviation of the errors that are drawn once for each element, and constant throughout a run.
     resolution : float
         Step to which measurements are rounded; 0 for none.
     """
@@ -96,22 +96,22 @@ def _require_probability(name: str, value: float) -> None:
 @represented()
 @dataclass(frozen=True, kw_only=True)
 class SensorSuite:
-    """The sensors of a robot; what is None is not measured. Channels are those of `SensorReadings`.
+    """The sensors of a robot; channels that are None are not measured. Channels are those of `SensorReadings`.
 
     Attributes
     ----------
     name : str
         What it is called.
     joint_angles, joint_speeds : Sensor or None
-        In the servos [rad, rad/s].
+        Angles and speeds of the joints, measured in the servos [rad, rad/s].
     currents : Sensor or None
-        Of the servos [A]; measured only where the stall currents of all servos are known.
+        Currents of the servos [A]; measured only where the stall currents of all servos are known.
     torques : Sensor or None
-        Of the servos [N m].
+        Torques of the servos [N m].
     contacts : FootSwitch or None
         Switches in the feet.
     forces : Sensor or None
-        Load cells in the feet, along the axes of B [N].
+        Load cells in the feet: forces along the axes of B [N].
     attitude, angular_rates : Sensor or None
         Roll and pitch [rad], and angular rates along the axes of B [rad/s].
     ground : Sensor or None
@@ -131,12 +131,12 @@ class SensorSuite:
 
     @classmethod
     def named(cls, name: str) -> Self:
-        """Return one of the suites with a name.
+        """Return the suite of a name.
 
         Parameters
         ----------
         name : str
-            ``"ideal"``: everything but the ground, exactly. ``"camera"``: the ground as well, nearly exactly.
+            ``"ideal"``: everything but the ground, exactly. ``"camera"``: the ground as well, with small errors.
             ``"hobby"``: foot switches and a cheap inertial sensor. ``"smart"``: servos that report position, speed and
             load. ``"blind"``: nothing.
 
@@ -168,17 +168,17 @@ _IDEAL = {name: FootSwitch() if name == "contacts" else _EXACT for name in CHANN
 _SUITES: Mapping[str, Mapping[str, Any]] = MappingProxyType(
     {
         "ideal": _IDEAL,
-        # Noise of a stereo camera at 0.5 m (2 to 3 mm), rate and delay are assumed; what legs hide is not left out.
+        # Noise of a stereo camera at 0.5 m (2 to 3 mm), rate and delay are assumed; legs hide no ground.
         "camera": _IDEAL | {"ground": Sensor(noise=0.003, delay=0.05, rate=20.0)},
-        # Inertial sensor of the MPU-6050's kind: noise of its rates 0.05 deg/s (data sheet); the offset that is left
-        # after zeroing at rest, and noise and offset of the attitude from a complementary filter, are assumed.
+        # Inertial sensor such as the MPU-6050: the noise of its rates is 0.05 deg/s (data sheet); their offset that is
+        # left after zeroing at rest, and noise and offset of the attitude from a complementary filter, are assumed.
         "hobby": {
             "contacts": FootSwitch(threshold=1.0, flips=0.001, delay=0.005),
             "attitude": Sensor(noise=math.radians(0.3), bias=math.radians(0.5), delay=0.01),
             "angular_rates": Sensor(noise=math.radians(0.05), bias=math.radians(0.2), delay=0.005),
         },
-        # Position to 1/4096 turn, as the STS3215 reports it; that a round of 18 servos takes 10 ms, the noise, the
-        # offsets of the horns and the lost messages are assumed.
+        # Position in steps of 1/4096 turn, as the STS3215 reports it; the 10 ms to read 18 servos in turn, the noise,
+        # the offsets of the horns and the lost messages are assumed.
         "smart": {
             "joint_angles": Sensor(resolution=math.tau / 4096, bias=math.radians(0.3), delay=0.01, dropout=0.002),
             "joint_speeds": Sensor(noise=0.02, resolution=0.0153, delay=0.01, dropout=0.002),

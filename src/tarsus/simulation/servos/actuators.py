@@ -23,9 +23,9 @@ from tarsus.simulation.servos.servo_model import ServoModel
 __all__ = ["ACTUATORS", "add_servo"]
 
 ACTUATORS = ("forward", "backward", "back-EMF")
-"""What the actuators of a joint are called, after its name."""
+"""Names of a joint's actuators, each of which follows the name of the joint."""
 
-# The engine takes finite ranges only [N m].
+# Stands for a torque without limit, as the engine takes only finite ranges [N m].
 _UNLIMITED = 1e10
 
 
@@ -58,7 +58,7 @@ def add_servo(spec: Any, joint: Any, servo: ServoModel) -> None:
 
 
 def _actuators(servo: ServoModel, stall: float) -> Iterator[tuple[float, tuple[float, float, float], Any]]:
-    """Yield gain, constant, position and velocity gains, and limits of the actuators."""
+    """Yield for each actuator its gain, its bias (constant, position gain, velocity gain) and its limits."""
     stiffness, play = servo.stiffness, servo.backlash / 2
     yield stiffness, (-stiffness * play, -stiffness, 0.0), (0.0, stall)
     yield stiffness, (stiffness * play, -stiffness, 0.0), (-stall, 0.0)

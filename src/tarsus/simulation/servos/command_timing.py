@@ -15,7 +15,7 @@ __all__ = ["CommandTiming"]
 
 
 class _Group:
-    """Servos with the same timing."""
+    """Servos with the same timing; `dead_band` is half of their dead bands, times are in physics steps."""
 
     def __init__(self, joints: Any, dead_band: Float[np.ndarray, "group"], period: int, delay: int) -> None:
         self.joints, self.period, self.delay = joints, period, delay
@@ -23,7 +23,7 @@ class _Group:
         self.pending: dict[int, np.ndarray] = {}
 
     def take_over(self, target: Float[np.ndarray, "joints"], angles: Float[np.ndarray, "joints"]) -> None:
-        """Move the targets of its joints to a command, as far as it is outside the dead band."""
+        """Move the targets of its joints towards a command, until the command is within their dead bands."""
         joints, band = self.joints, self.dead_band
         new = angles[joints]
         target[joints] = np.minimum(np.maximum(target[joints], new - band), new + band)
@@ -32,8 +32,9 @@ class _Group:
 class CommandTiming:
     """The targets of all servos from one physics step to the next.
 
-    A servo takes over the newest command at every multiple of its update period; it acts after its delay. Within the
-    dead band around its target a command changes nothing, so that the target lags by half of it: hysteresis.
+    A servo takes over the newest command at every multiple of its update period; the command acts after the delay.
+    Within the dead band around its target a command changes nothing, so that the target lags by half the dead band:
+    hysteresis.
 
     Parameters
     ----------
@@ -52,7 +53,7 @@ class CommandTiming:
         self._groups = []
         for timing in sorted(set(timings)):
             joints = np.array([each == timing for each in timings])
-            # All joints as a slice take less time than as indices.
+            # For all joints a slice takes less time than a mask.
             self._groups.append(_Group(slice(None) if joints.all() else joints, dead_band[joints], *timing))
         self.target = np.array(angles, dtype=float)
 
@@ -85,12 +86,12 @@ class CommandTiming:
         return self.target
 
     def next_change(self, step: int, end: int) -> int:
-        """Return the first physics step after one, before an end, in which a target may change; else the end.
+        """Return the first physics step between two in which a target may change; the later one if there is none.
 
         Parameters
         ----------
         step, end : int
-            Numbers of steps.
+            Numbers of the two steps; neither is between them.
         """
         for group in self._groups:
             for each in group.pending:

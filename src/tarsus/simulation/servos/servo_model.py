@@ -29,10 +29,10 @@ class ServoModel:
     """A position-controlled servo.
 
     The torque is proportional to the position error, falls with the speed by the slope of the torque-speed line, and is
-    limited by that line: a driving servo gives at most ``stall_torque (1 - speed / no_load_speed)``, one that is driven
-    by its load at most the stall torque. Within the backlash there is no stiffness. A new command is taken over
-    `update_rate` times a second, acts after `delay`, and moves the target only as far as it is outside the dead
-    band around it.
+    limited by that line: a servo that drives its load gives at most ``stall_torque (1 - speed / no_load_speed)``, one
+    that is driven by its load at most the stall torque. Within the backlash there is no stiffness. Commands are taken
+    over `update_rate` times a second and act after `delay`. A command within the dead band around the target changes
+    nothing; one outside it moves the target only until the command is at the edge of the dead band.
 
     Attributes
     ----------
@@ -41,7 +41,7 @@ class ServoModel:
     stall_torque : float
         Greatest torque [N m]; may be infinite.
     no_load_speed : float
-        Speed at which it drives nothing any more [rad/s]; may be infinite.
+        Speed at which no driving torque is left [rad/s]; may be infinite.
     control_stiffness : float
         Torque per position error of the control loop [N m/rad].
     gear_stiffness : float
@@ -55,9 +55,9 @@ class ServoModel:
     dead_band : float
         Width of the range of commands around the target in which it does not react [rad].
     delay : float
-        From a command to its effect [s].
+        Time from a command to its effect [s].
     update_rate : float
-        How often a command is taken over [1/s]; infinite for at every physics step.
+        How often commands are taken over [1/s]; infinite for once in every physics step.
     assumed : tuple of str
         What its numbers assume beyond the catalogue, a line each.
 
@@ -97,12 +97,13 @@ class ServoModel:
         Parameters
         ----------
         robot : Robot, optional
-            The single robot it is for: joints are stiffer in a robot that is heavier than the presets, and softer with
-            less rotor inertia in a lighter one, whose feet would hit the ground too hard. Left out: like the presets.
+            The single robot that the servo is for. Stiffness, damping and rotor inertia are greater in a robot that is
+            heavier than the presets, and less in a lighter one, whose feet would hit the ground too hard with those of
+            the presets. Left out, they are as for the presets.
         stiffness : float, optional
-            Torque per position error [N m/rad]; left out, 100 N m/rad in robots like the presets.
+            Torque per position error [N m/rad]; left out, 100 N m/rad for robots like the presets.
         damping : float, optional
-            Torque per speed [N m s/rad]; left out, 1 N m s/rad in robots like the presets.
+            Torque per speed [N m s/rad]; left out, 1 N m s/rad for robots like the presets.
         """
         weight = 0.0 if robot is None else known_weight(robot)
         length = 0.0 if robot is None else float((robot.femur + robot.tibia).mean())
@@ -121,7 +122,7 @@ class ServoModel:
 
     @classmethod
     def of(cls, servo: Servo | None, *, supply: float | None = None) -> Self:
-        """Return the model of a servo, with what its catalogue entry leaves open assumed and listed.
+        """Return the model of a servo; what its catalogue entry does not tell is assumed, and listed in `assumed`.
 
         Parameters
         ----------
@@ -200,13 +201,13 @@ class ServoModel:
 
 
 def _beyond(value: float, usual: tuple[float, float]) -> float:
-    """Return a value over the end of the usual range that it is beyond; 1 within that, and where it is unknown."""
+    """Return the ratio of a value to the end of the usual range that it is beyond; 1 within the range, or for 0."""
     least, most = usual
     return value / min(max(value, least), most) if value else 1.0
 
 
-# Weight times length of femur and tibia [N m], and times its square [N m^2], between which are all presets: their ideal
-# servos are the same.
+# Ranges of weight times the length of femur and tibia [N m], and of weight times its square [N m^2]: all presets lie
+# within, and so have the same ideal servos.
 _IDEAL_TORQUES, _IDEAL_INERTIAS = (3.7, 8.5), (0.65, 2.4)
 _POSITIVE = {
     "stall_torque": "N m",

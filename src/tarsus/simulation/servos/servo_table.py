@@ -16,19 +16,19 @@ if TYPE_CHECKING:
 
 __all__ = ["ServoTable"]
 
-# Fraction of the greatest torque from which on a servo counts as saturated.
+# Fraction of the greatest torque at its speed from which on a servo counts as saturated.
 _ALL = 0.99
 
 
 class ServoTable(NamedTuple):
-    """The servo of every joint; joints are in one axis, leg by leg.
+    """The servo of every joint; the arrays have one axis for all joints, leg by leg.
 
     Attributes
     ----------
     servos : tuple of tuple of ServoModel
         ``servos[leg][joint]``.
     stiffness : array, shape (joints,)
-        Torque per error [N m/rad].
+        Torque per position error [N m/rad].
     damping : array, shape (joints,)
         All damping of the joints [N m s/rad].
     stall_torque : array, shape (joints,)
@@ -57,9 +57,9 @@ class ServoTable(NamedTuple):
         Raises
         ------
         MissingDataError
-            If a servo is unknown for ``"catalogue"``.
+            With ``"catalogue"``, if a servo is unknown.
         InputError
-            If it is something else.
+            If `servos` is none of these.
         """
         rows = _rows(robot, servos)
         each = [servo for row in rows for servo in row]
@@ -79,12 +79,12 @@ class ServoTable(NamedTuple):
     def saturated(
         self, drive: Float[np.ndarray, "joints"], speed: Float[np.ndarray, "joints"]
     ) -> Bool[np.ndarray, "joints"]:
-        """Return which servos give at least 99 % of the torque that they can at their speed.
+        """Return which servos give at least 99 % of the greatest torque at their speed.
 
         Parameters
         ----------
         drive : array, shape (joints,)
-            Torque without what damps it [N m].
+            Torque before damping, as from `drive_torque` [N m].
         speed : array, shape (joints,)
             Joint speed [rad/s].
         """

@@ -6,7 +6,7 @@ With position error e, joint speed w, and the slope s of the torque-speed line (
     motor  = spring - s * w                   within  -stall and stall
     torque = motor - damping * w
 
-The second line is what a brushed motor gives on a voltage: while it drives, at most the stall torque times
+The second line is the torque of a brushed motor at a given voltage: while it drives, at most the stall torque times
 ``1 - |w| / no-load speed``; while it is driven by its load, at most the stall torque, as in
 `tarsus.load.servo_limits.utilisation`.
 """
@@ -34,7 +34,7 @@ def drive_torque(
     stall_torque: Numbers,
     slope: Numbers,
 ) -> Float[np.ndarray, "*batch"]:
-    """Return the torque of servos without what damps them; all arrays broadcast against each other.
+    """Return the torque of servos before damping; all arrays broadcast against each other.
 
     Parameters
     ----------
@@ -43,7 +43,7 @@ def drive_torque(
     speed : array, shape (...)
         Joint speed [rad/s].
     stiffness : array, shape (...)
-        Torque per error [N m/rad].
+        Torque per position error [N m/rad].
     play : array, shape (...)
         Half the backlash [rad].
     stall_torque : array, shape (...)
