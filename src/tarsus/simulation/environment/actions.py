@@ -23,7 +23,7 @@ ACTIONS = ("residual", "joint")
 class ActionMap:
     """Turns actions into joint targets within the joint limits.
 
-    ``"residual"``: what is added to the joint angles of a walk controller, as a fraction of a greatest residual.
+    ``"residual"``: what is added to the joint angles of a walk controller, as a fraction of the greatest residual.
     ``"joint"``: the targets themselves, 0 those of standing, -1 and 1 the joint limits.
 
     Parameters
@@ -64,14 +64,14 @@ class ActionMap:
         Parameters
         ----------
         action : array, shape (3 * legs,)
-            The action; what is outside [-1, 1] counts as the nearer of the two.
+            The action; numbers outside [-1, 1] are clipped to it.
         walk : array, shape (legs, 3)
             Joint angles of the walk controller [rad].
 
         Raises
         ------
         InputError
-            If it has another size, or is not finite.
+            If the action has another size, or is not finite.
         """
         numbers = np.asarray(action, dtype=float)
         if numbers.size != self._low.size or not np.isfinite(numbers).all():

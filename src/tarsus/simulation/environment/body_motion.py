@@ -1,4 +1,4 @@
-"""How the body moves in a simulation, exactly: what rewards and falls are computed from."""
+"""The exact motion of the body in a simulation, from which rewards and falls are computed."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 __all__ = ["BodyMotion"]
 
-# Time constant of the velocity's filter: the body sways with every step [s].
+# Time constant of the velocity's low-pass filter, as the body sways with every step [s].
 _FILTER = 0.25
 # Tilt at which a robot counts as fallen [rad].
 _FALLEN = math.radians(45)
@@ -35,7 +35,7 @@ class BodyMotion:
     velocity : array, shape (3,)
         Forward, left [m/s] and turning [rad/s] in the heading frame, low-pass filtered with 0.25 s.
     travelled : array, shape (3,)
-        The way of the last step in its heading frame: forward, left [m], turned [rad].
+        Motion in the last step, in the heading frame at its middle: forward, left [m], turned [rad].
     tilt : float
         Angle between B's z axis and the vertical [rad].
     rocking : float
@@ -49,12 +49,12 @@ class BodyMotion:
         self._place = self._read()
 
     def update(self, dt: float) -> None:
-        """Take a step.
+        """Update the motion after a step of the environment.
 
         Parameters
         ----------
         dt : float
-            Its duration [s].
+            Duration of the step [s].
         """
         before_x, before_y, before_yaw = self._place
         self._place = x, y, yaw = self._read()
@@ -77,7 +77,7 @@ class BodyMotion:
         return x, y, math.atan2(2 * (w * k + i * j), 1 - 2 * (j * j + k * k))
 
     def command_error(self, command: Float[np.ndarray, "3"], top: Float[np.ndarray, "3"]) -> Float[np.ndarray, "3"]:
-        """Return the difference of the velocity from a command, as fractions of the top speeds ``(3,)``.
+        """Return the filtered velocity less a command, as fractions of the top speeds ``(3,)``.
 
         Parameters
         ----------

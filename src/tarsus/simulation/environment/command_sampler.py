@@ -19,14 +19,14 @@ __all__ = ["CommandSampler", "top_speeds"]
 
 Range = tuple[float, float]
 
-# Part of what the robot can sustain in a direction that a command takes at most.
+# Greatest command, as a fraction of the speed that the robot can sustain in that direction.
 _SUSTAINED = 0.95
 
 
 @represented()
 @dataclass(frozen=True, kw_only=True)
 class CommandSampler:
-    """Draws twists, evenly in each axis; those that the robot can't sustain are scaled down together.
+    """Draws twists uniformly along each axis; one that is too fast for the robot to sustain is scaled down as a whole.
 
     Attributes
     ----------
@@ -61,11 +61,11 @@ class CommandSampler:
         Parameters
         ----------
         walk : WalkController
-            Whose robot is commanded.
+            Walk controller of the robot that is commanded.
         top : array, shape (3,)
             Its top speed along each axis, from `top_speeds`.
         random : numpy.random.Generator
-            What draws.
+            The random number generator.
         """
         low, high = np.array([self.forward, self.left, self.turning]).T
         twist: np.ndarray = random.uniform(low, high) * top
@@ -80,6 +80,6 @@ def top_speeds(walk: WalkController) -> Float[np.ndarray, "3"]:
     Parameters
     ----------
     walk : WalkController
-        What walks it.
+        Walk controller of the robot.
     """
     return np.array([walk.top_speed(axis) for axis in np.eye(3).tolist()])

@@ -30,7 +30,7 @@ class Domain(NamedTuple):
     servos : tuple of tuple of ServoModel
         Its servos.
     friction : float
-        Factor of the ground's coefficient of friction.
+        Factor for the ground's coefficient of friction.
     """
 
     robot: Robot
@@ -41,26 +41,26 @@ class Domain(NamedTuple):
 @represented()
 @dataclass(frozen=True, kw_only=True)
 class DomainRandomisation:
-    """Factors by which an episode's values differ from those of the robot's file and its servos' models.
+    """Ranges of the factors by which an episode's values differ from those of the robot's file and its servos' models.
 
-    Every joint has its own stiffness, torque, backlash and dead band; the delay is common, that of one bus or pulse
-    generator. Defaults are of the size of what is assumed or unknown of the servos (`ServoModel.assumed`), of a
-    battery's discharge for the torque, and of a payload for the mass.
+    Every joint has its own stiffness, torque, backlash and dead band; all have one delay, that of the bus or pulse
+    generator. The defaults are as wide as the uncertainty about the servos (`ServoModel.assumed`); those of the torque
+    reflect a battery's discharge, those of the mass a payload.
 
     Attributes
     ----------
     stiffness : (float, float)
-        Of control loop and gears.
+        Stiffness of control loop and gears.
     stall_torque : (float, float)
-        With the no-load speed, as of a supply voltage.
+        Stall torque and no-load speed, which vary together, as with the supply voltage.
     backlash : (float, float)
-        With the dead band.
+        Backlash and dead band, which vary together.
     delay : (float, float)
-        Of commands.
+        Delay of commands.
     mass : (float, float)
-        Of the body.
+        Mass of the body.
     friction : (float, float)
-        Of the ground.
+        Friction of the ground.
 
     Raises
     ------
@@ -91,7 +91,7 @@ class DomainRandomisation:
         servos : "catalogue", "ideal", ServoModel or nested sequence of ServoModel
             Its servos, as for `SimulatedPlant`.
         random : numpy.random.Generator
-            What draws.
+            The random number generator.
         """
         rows, delay = ServoTable.of(robot, servos).servos, random.uniform(*self.delay)
         varied = tuple(tuple(self._servo(servo, delay, random) for servo in row) for row in rows)

@@ -20,14 +20,14 @@ class Evaluation(NamedTuple):
     Attributes
     ----------
     episodes : int
-        How many.
+        Number of episodes.
     reward : float
         Mean reward of a step.
     error : float
-        Velocity error: root mean square, over all steps but the first second after a command, of the difference of the
-        filtered velocity from the command, as a fraction of the top speeds, its three components taken together.
+        Root mean square of the velocity error: of the vector from the command to the filtered velocity, its components
+        as fractions of the top speeds. Steps in the first second after a command don't count; NaN where none are left.
     falls : float
-        Part of the episodes that ended with a fall.
+        Fraction of the episodes that ended with a fall.
     reward_terms : dict of str to float
         Mean of each weighted term of the reward.
     """
@@ -39,7 +39,7 @@ class Evaluation(NamedTuple):
     reward_terms: dict[str, float]
 
 
-# The steps after a new command that don't count for the error: one second.
+# Steps after a new command that don't count for the error: one second.
 _ADJUSTING = 50
 
 
@@ -53,9 +53,9 @@ def evaluate(env: Any, policy: Callable[[Any], Any], *, episodes: int = 10, seed
     policy : callable
         Returns an action for an observation; its method ``reset``, if it has one, is called at the start of an episode.
     episodes : int
-        How many.
+        Number of episodes.
     seed : int
-        Seed of the first; that of each further one is greater by one.
+        Seed of the first episode; that of each further episode is greater by one.
 
     Raises
     ------

@@ -17,7 +17,7 @@ __all__ = ["BOUND", "Observer"]
 BOUND = 10.0
 """Observations are within plus and minus this."""
 
-# What the numbers of each channel are divided by, so that they are about 1 in size
+# Divisors for the values of each channel, which bring them to a size of about 1
 # [rad, rad/s, A, N m, 1, N, rad, rad/s].
 _SCALES = {
     "joint_angles": 0.5,
@@ -35,8 +35,8 @@ class Observer:
     """Puts observations together.
 
     They are, in this order: the command over the top speeds (3); what the sensor suite measures, channel by channel;
-    the last joint targets (3 a leg); with residual actions the joint angles of the walk controller (3 a leg) and the
-    feet that it has on the ground (1 a leg); with joint actions sine and cosine of a clock (2). Joint angles are
+    the last joint targets (3 a leg); with residual actions the joint angles of the walk controller (3 a leg) and
+    which feet it has on the ground (1 a leg); with joint actions sine and cosine of a clock (2). Joint angles are
     relative to standing.
 
     Parameters

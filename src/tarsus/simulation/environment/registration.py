@@ -7,7 +7,7 @@ import gymnasium
 __all__ = ["EPISODE_STEPS", "WALK", "register_walk"]
 
 WALK = "tarsus/Walk-v0"
-"""Its name."""
+"""Name of the environment."""
 
 EPISODE_STEPS = 500
 """Steps of an episode: 10 s."""

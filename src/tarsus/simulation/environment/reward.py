@@ -21,9 +21,9 @@ if TYPE_CHECKING:
 
 __all__ = ["Reward", "RewardWeights"]
 
-# Difference from the command, as a fraction of the top speed, at which 1/e of the reward of following is left. Tilt,
-# rocking and joint speed that cost their weights [rad, rad/s, rad/s].
+# Velocity error, as a fraction of the top speed, at which 1/e of the reward for following the command is left.
 _TOLERANCE = 0.25
+# Tilt, rocking, and rate of the joint targets at which the terms of these are 1 [rad, rad/s, rad/s].
 _TILT, _ROCKING, _JOINT_SPEED = math.radians(10), 1.0, 5.0
 
 
@@ -35,21 +35,21 @@ class RewardWeights:
     Attributes
     ----------
     velocity : float
-        Of ``exp(-(e/0.25)^2)``, e the difference of the velocity forward and left from the command over the top speed.
+        Weight of ``exp(-(e/0.25)^2)``; e is the norm of the velocity errors forward and left, each over its top speed.
     turning : float
-        Of the same for the turning rate.
+        Weight of the same for the turning rate.
     tilt : float
-        Of ``(tilt / 10 deg)^2``.
+        Weight of ``(tilt / 10 deg)^2``.
     rocking : float
-        Of ``(angular speed about x and y / (1 rad/s))^2``.
+        Weight of ``(angular speed about x and y / (1 rad/s))^2``.
     torque : float
-        Of the mean of ``(torque / stall torque)^2`` over the joints.
+        Weight of the mean of ``(torque / stall torque)^2`` over the joints.
     power : float
-        Of the sum of ``|torque * speed|`` over the joints, over the weight times the top speed forward.
+        Weight of the sum of ``|torque * speed|`` over the joints, divided by the robot's weight and top speed forward.
     target_rate : float
-        Of the mean of ``(change of the joint targets a second / (5 rad/s))^2`` over the joints.
+        Weight of the mean of ``(change of the joint targets per second / (5 rad/s))^2`` over the joints.
     fall : float
-        Of 1 in the step in which the robot falls.
+        Weight of a term that is 1 in the step in which the robot falls, else 0.
     """
 
     velocity: float = 1.0
@@ -111,7 +111,7 @@ class Reward:
         command : array, shape (3,)
             What was commanded [m/s, m/s, rad/s].
         target_rates : array, shape (legs, 3)
-            Change of the joint targets a second [rad/s].
+            Change of the joint targets per second [rad/s].
         """
         forward, left, turning = motion.command_error(command, self._top).tolist()
         torques, speeds = plant.torques.ravel(), plant.mj_data.qvel[6:]

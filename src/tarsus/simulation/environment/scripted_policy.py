@@ -1,4 +1,4 @@
-"""The project's own controller as a policy: what a learned one is to be compared with."""
+"""The project's own controller as a policy, with which learned ones can be compared."""
 
 from __future__ import annotations
 

@@ -15,16 +15,16 @@ from tarsus.simulation.terrain.protocol import Terrain
 
 __all__ = ["TerrainCurriculum"]
 
-# Part of the commanded way from which on a robot goes up a level, and below which it goes down.
+# Fraction of the commanded distance from which on a robot goes up a level, and that below which it goes down.
 _UP, _DOWN = 0.8, 0.4
 
 
 @represented("levels", "level")
 class TerrainCurriculum:
-    """The terrain of one episode after the other.
+    """Chooses the terrain of each episode by how the robot walked in the one before.
 
-    A robot that makes 80 % of the commanded way without a fall goes up a level, one that falls or makes less than 40 %
-    goes down, and one that masters the last level continues on a random one, so that it forgets none: the
+    A robot that covers 80 % of the commanded distance without a fall goes up a level; one that falls or covers less
+    than 40 % goes down; one that would go up from the last level continues on a random one, and forgets none: the
     scheme of Rudin et al., "Learning to Walk in Minutes Using Massively Parallel Deep Reinforcement Learning" (2021).
     A terrain with a seed gets a new one in each episode.
 
@@ -45,7 +45,7 @@ class TerrainCurriculum:
     Raises
     ------
     InputError
-        If there is no level, a level is no terrain, or the first level does not exist.
+        If there is no level, a level is not a terrain, or the first level does not exist.
     """
 
     def __init__(self, levels: Sequence[Terrain] = (Flat(),), *, level: int = 0) -> None:
@@ -81,11 +81,11 @@ class TerrainCurriculum:
         Parameters
         ----------
         covered : float
-            Part of the commanded way that was made.
+            Fraction of the commanded distance that was covered.
         fallen : bool
             Whether the robot fell.
         random : numpy.random.Generator
-            What draws.
+            The random number generator.
         """
         if fallen or covered < _DOWN:
             self.level = max(0, self.level - 1)
@@ -99,9 +99,9 @@ class TerrainCurriculum:
         Parameters
         ----------
         friction : float
-            Factor of its coefficient of friction.
+            Factor for its coefficient of friction.
         random : numpy.random.Generator
-            What draws its seed.
+            The random number generator, for its seed.
         """
         terrain = self.levels[self.level]
         changes: dict[str, Any] = {} if friction == 1.0 else {"friction": friction * terrain.friction}

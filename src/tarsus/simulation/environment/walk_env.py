@@ -88,14 +88,14 @@ class WalkEnv(gymnasium.Env[Any, Any]):
     readings : SensorReadings
         What was measured last.
     motion : BodyMotion
-        How the body moves, exactly.
+        The exact motion of the body.
 
     Raises
     ------
     InputError
         If an argument is out of its range, or the robot is a batch.
     MissingDataError
-        If the mass of the body or of a link is unknown, or a servo for ``"catalogue"``.
+        If the mass of the body or of a link is unknown; with ``"catalogue"``, also if a servo is.
     """
 
     readings: SensorReadings
@@ -156,8 +156,8 @@ class WalkEnv(gymnasium.Env[Any, Any]):
         Parameters
         ----------
         seed : int, optional
-            Seed of all that is random from now on, with the curriculum at its first level. The same seed and actions
-            give the same episodes to the bit.
+            Seed of all that is random from now on; the curriculum starts again at its first level. The same seed and
+            actions give the same episodes to the bit.
         options : dict, optional
             ``"command"``: a twist that is kept for the whole episode [m/s, m/s, rad/s]; ``"level"``: the level of the
             terrain.
@@ -206,7 +206,7 @@ class WalkEnv(gymnasium.Env[Any, Any]):
         Returns
         -------
         observation, reward, terminated, truncated, info
-            Truncated is always False: the time limit is that of `gymnasium.make`.
+            Truncated is always False: `gymnasium.make` adds the time limit.
 
         Raises
         ------
@@ -218,7 +218,7 @@ class WalkEnv(gymnasium.Env[Any, Any]):
         try:
             self.readings = self.plant.execute(targets, DT)
         except SimulationError:
-            # What no longer can be simulated has fallen.
+            # A robot that can no longer be simulated counts as fallen.
             self._crashed = True
             return self._observation(), self._reward.fall, True, False, self._info({"fall": self._reward.fall})
         self.motion.update(DT)
@@ -260,7 +260,7 @@ class WalkEnv(gymnasium.Env[Any, Any]):
             self._angles = self._walk.step(self.command.tolist(), DT)
 
     def _count(self) -> None:
-        """Add the last step to the commanded way and what was made of it, both as fractions of the top speeds."""
+        """Add the last step to the commanded distance and the distance covered along it, in units of the top speeds."""
         asked, made = self.command / self.top_speeds, self.motion.travelled / self.top_speeds
         size = math.sqrt(float(asked @ asked))
         if size > 0:

@@ -26,30 +26,30 @@ T = TypeVar("T")
 
 @represented("num_envs", "threads", "autoreset_mode")
 class WalkVectorEnv(VectorEnv[Any, Any, Any]):
-    """Environments of one kind that are simulated side by side: the engine's steps run outside of Python's lock.
+    """Environments of one kind that are simulated in parallel: the engine's steps run without Python's global lock.
 
     Environment i with the seed s does what a `WalkEnv` with the seed s + i does, to the bit, for any number of threads.
 
     Parameters
     ----------
     num_envs : int
-        How many.
+        Number of environments.
     max_episode_steps : int, optional
         Steps after which an episode is truncated; without limit where left out.
     threads : int, optional
-        How many threads; one for each of the machine's cores where left out.
+        Number of threads; where left out, one for each core that this process may use.
     autoreset_mode : AutoresetMode or str
         When an environment begins its next episode: in the step after its end, in the same step (then ``"final_obs"``
         and ``"final_info"`` are in the infos), or never.
     **options
-        Those of `WalkEnv`.
+        Arguments of `WalkEnv`.
 
     Attributes
     ----------
     envs : tuple of WalkEnv
         The environments.
     threads : int
-        How many threads.
+        Number of threads.
 
     Raises
     ------
@@ -92,7 +92,7 @@ class WalkVectorEnv(VectorEnv[Any, Any, Any]):
         Parameters
         ----------
         seed : int or sequence of int, optional
-            Seed of the first environment, each further one's being greater by one; or a seed for each.
+            Seed of the first environment, greater by one for each further environment; or a seed for each.
         options : dict, optional
             As for `WalkEnv.reset`, with ``"reset_mask"``, an array of bool, for some of the environments only.
 
@@ -139,7 +139,7 @@ class WalkVectorEnv(VectorEnv[Any, Any, Any]):
         Raises
         ------
         InputError
-            If an action has another size, or is not finite, or an environment has ended and is never reset.
+            If an action has another size or is not finite, or, where none is reset by itself, an environment has ended.
         """
         if self.autoreset_mode is AutoresetMode.DISABLED and self._ended.any():
             raise InputError(f"environment {int(np.argmax(self._ended))} has ended; reset it before the next step")
@@ -177,7 +177,7 @@ class WalkVectorEnv(VectorEnv[Any, Any, Any]):
         return observation, info
 
     def _side_by_side(self, work: Callable[[int], T], numbers: Sequence[int]) -> dict[int, T]:
-        """Return the results of work by number, each thread taking every so many numbers."""
+        """Return the results of work by number; of n threads, each takes every n-th number."""
 
         def share(thread: int) -> list[tuple[int, T]]:
             return [(number, work(number)) for number in numbers[thread :: self.threads]]
@@ -197,5 +197,5 @@ class WalkVectorEnv(VectorEnv[Any, Any, Any]):
 
 
 def _cores() -> int:
-    """Return how many cores this process may use; not every system says."""
+    """Return how many cores this process may use, or the number of all where the system doesn't say."""
     return len(getattr(os, "sched_getaffinity", lambda _: range(os.cpu_count() or 1))(0))
