@@ -1,4 +1,4 @@
-"""Terrain: the ground that a simulated robot walks on, a value for each kind."""
+"""Terrain: the ground that a simulated robot walks on, with a class for each kind."""
 
 from __future__ import annotations
 

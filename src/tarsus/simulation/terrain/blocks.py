@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 __all__ = ["Blocks"]
 
 _MOST_BLOCKS = 4096
-# How far the blocks reach into the ground [m]: a foot that sinks into a low one is pushed up, not out of its underside.
+# How far the blocks reach into the ground [m], so that a foot that sinks into a low block is pushed out at its top.
 _UNDERGROUND = 0.1
 
 
@@ -33,7 +33,7 @@ class Blocks:
     Attributes
     ----------
     rise : float
-        Greatest height of a block; heights are distributed evenly from 0 [m].
+        Greatest height of a block; heights are distributed uniformly from 0 to this [m].
     size : float
         Edge of a block [m].
     extent : float

@@ -32,11 +32,11 @@ class Box:
     rise : float
         Its height [m].
     length, width : float
-        Its size along and across its direction [m].
+        Its size along `yaw` and across it [m].
     start, aside : float
-        Where the middle of its near face is: ahead, and to the left [m].
+        Position of the middle of its near face: ahead of the origin, and to its left [m].
     yaw : float
-        Its direction, 0 for a near face across x [rad].
+        Its direction; at 0, the near face is perpendicular to x [rad].
     friction : float
         Coefficient of friction.
     """
@@ -66,7 +66,7 @@ class Box:
         return corners
 
     def ahead(self, x: Any, y: Any) -> Shaped[np.ndarray, "..."]:
-        """Return how far places are ahead of its near face, and to its left, as complex numbers [m].
+        """Return how far places are ahead of the middle of the near face, and to its left, as complex numbers [m].
 
         Parameters
         ----------
@@ -87,7 +87,7 @@ class Box:
         Flat(friction=self.friction).add_to(spec)
         geom, attributes = mujoco_module().mjtGeom, {"name": "box", **surface(self.friction)}
         corners = [(place.real, place.imag, z) for place in self.corners.tolist() for z in (0.0, self.rise)]
-        # Whatever draws the terrain takes boxes for upright ones along x and y.
+        # A turned box is a mesh, as code that draws terrains takes the engine's boxes to be along x and y.
         if self.yaw:
             spec.add_mesh(name="box", uservert=np.array(corners).ravel())
             spec.worldbody.add_geom(type=geom.mjGEOM_MESH, meshname="box", **attributes)

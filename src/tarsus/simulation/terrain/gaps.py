@@ -28,13 +28,13 @@ class Gaps:
     width : float
         Width of each trench along x [m].
     spacing : float
-        From the start of one to the start of the next [m].
+        Distance from the start of one trench to the start of the next [m].
     count : int
-        How many there are.
+        Number of trenches.
     depth : float
-        How deep they are [m].
+        Depth of the trenches [m].
     start : float
-        Where the first begins [m].
+        Where the first trench begins, along x [m].
     friction : float
         Coefficient of friction.
     """

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 __all__ = ["HeightField"]
 
-# How thick the ground is below its lowest point [m].
+# Thickness of the ground below its lowest point [m].
 _THICKNESS = 0.5
 
 
@@ -70,7 +70,7 @@ class HeightField:
     def from_png(
         cls, path: str | os.PathLike[str], *, size: tuple[float, float], rise: float, friction: float = FRICTION
     ) -> Self:
-        """Read a height field from a grey picture: black is 0, white is `rise`; up in the picture is along y.
+        """Read a height field from a grey picture: black is 0, white is `rise`; y points up in the picture.
 
         Parameters
         ----------
@@ -124,7 +124,7 @@ class HeightField:
         """Add the ground to a model; see `Terrain`."""
         geom, attributes = mujoco_module().mjtGeom, surface(self.friction)
         low, high = float(self.heights.min()), float(self.heights.max())
-        # Where all heights are equal the engine takes 0 to 1 times the range, hence a range that is not 0.
+        # The engine's heights are fractions of a range that must not be 0, not even where all heights are equal.
         span = (high - low) or 1.0
         rows, columns = self.heights.shape
         half_x, half_y = self.size[0] / 2, self.size[1] / 2

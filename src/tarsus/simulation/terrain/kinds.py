@@ -32,7 +32,7 @@ TERRAINS: dict[str, Any] = {
 }
 """Kinds of terrain by name."""
 
-# Values that a kind needs and has no default for [m, rad].
+# Defaults of the parameters that a kind of terrain requires [m, rad].
 _DEFAULTS: dict[str, dict[str, float]] = {
     "ramp": {"slope": math.radians(5)},
     "step": {"rise": 0.02},
@@ -48,9 +48,9 @@ class TerrainParameter(NamedTuple):
     Attributes
     ----------
     name : str
-        What it is called.
+        Name of the parameter.
     unit : str
-        ``"mm"``, ``"deg"``, or nothing for a plain number.
+        ``"mm"``, ``"deg"``, or empty for a plain number.
     default : float
         Its value where none is given, in that unit.
     whole : bool
@@ -126,7 +126,7 @@ def si_value(name: str, value: float) -> float:
     Parameters
     ----------
     name : str
-        What it is called.
+        Name of the parameter.
     value : float
         Its value.
     """

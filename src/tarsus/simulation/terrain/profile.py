@@ -16,12 +16,12 @@ if TYPE_CHECKING:
 
 __all__ = ["Profile", "require_count", "require_on_ground"]
 
-# How thick the ground is below its lowest point [m].
+# Thickness of the ground below its lowest point [m].
 _THICKNESS = 1.0
 
 
 class Profile(NamedTuple):
-    """Straight segments of ground along x, without end to both sides.
+    """Straight segments of ground along x, of unlimited width.
 
     Attributes
     ----------
@@ -86,7 +86,7 @@ def require_count(name: str, count: float) -> int:
     Raises
     ------
     InputError
-        If it is less than 1, or no whole number.
+        If it is less than 1, or not a whole number.
     """
     if count < 1 or count % 1:
         raise InputError(f"{name} is {count}; there must be at least 1, and a whole number of them")
@@ -101,7 +101,7 @@ def require_on_ground(name: str, *edges: float) -> None:
     name : str
         What has the edges, in messages.
     *edges : float
-        The edges that limit all others [m].
+        The outermost edges, or all of them [m].
 
     Raises
     ------

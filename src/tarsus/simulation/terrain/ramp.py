@@ -29,7 +29,7 @@ class Ramp:
     slope : float
         Angle of the slope, positive uphill [rad].
     start : float
-        Where it begins [m].
+        Where the slope begins, along x [m].
     length : float
         Its length along x [m].
     friction : float

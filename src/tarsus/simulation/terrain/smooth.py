@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 __all__ = ["Smooth"]
 
 _WAVES = 64
-# Grid points along the shortest wave, which is half as long as the mean.
+# Grid points in the length of the shortest wave, which is half the mean.
 _POINTS = 8
 _MOST_POINTS = 1000
 
@@ -32,13 +32,14 @@ class Smooth:
     Attributes
     ----------
     amplitude : float
-        Greatest height over and depth below level ground [m].
+        Greatest height above or depth below level ground [m].
     wavelength : float
-        Mean length of the waves; each has between half and three halves of it [m].
+        Mean length of the waves; that of each is between half and one and a half times the mean [m].
     extent : float
         Half the edge of the square field; around it, level ground [m].
     clear : float
-        The ground is level nearer to the origin than this [m]; over the same distance again it becomes uneven.
+        Within this distance of the origin the ground is level [m]; over the same distance again it gradually becomes
+        uneven.
     seed : int
         Seed of the waves.
     friction : float
@@ -70,7 +71,7 @@ class Smooth:
 
     @cached_property
     def field(self) -> HeightField:
-        """The height field that it is."""
+        """The terrain as a height field."""
         random = np.random.default_rng(self.seed)
         length = self.wavelength * random.uniform(0.5, 1.5, _WAVES)
         direction, phase = random.uniform(0, 2 * np.pi, (2, _WAVES))

@@ -17,7 +17,7 @@ __all__ = ["GroundField", "TerrainSolids", "terrain_solids"]
 
 
 class GroundField(NamedTuple):
-    """Heights on a grid. Each cell is two triangles, which share the edge from its least x, y to its greatest.
+    """Heights on a grid. Each cell is two triangles, which share the diagonal from least to greatest x and y.
 
     Attributes
     ----------
@@ -41,9 +41,9 @@ class TerrainSolids(NamedTuple):
     boxes : array, shape (n, 2, 3)
         Least and greatest corner of each box [m].
     triangles : array, shape (n, 3, 3)
-        Corners of the surfaces that are not those of boxes, counter-clockwise seen from outside [m].
+        Corners of the triangles that make up the meshes, counter-clockwise seen from outside [m].
     field : GroundField or None
-        Its height field.
+        The terrain's height field; None where it has none.
     """
 
     level: bool

@@ -31,9 +31,9 @@ class Stairs:
     tread : float
         Depth of each step [m].
     steps : int
-        How many there are.
+        Number of steps.
     start : float
-        Where the first face is [m].
+        Where the first face is, along x [m].
     friction : float
         Coefficient of friction.
     """

@@ -29,7 +29,7 @@ class Step:
     rise : float
         Height of the farther level, negative for a step down [m].
     start : float
-        Where the face is [m].
+        Where the face is, along x [m].
     friction : float
         Coefficient of friction.
     """

@@ -9,7 +9,7 @@ from tarsus.simulation.settings import SOLREF
 __all__ = ["FAR", "surface"]
 
 FAR = 50.0
-"""How far terrains extend from the origin where they have no end of their own [m]."""
+"""How far terrains that have no end of their own extend from the origin [m]."""
 
 _TORSIONAL, _ROLLING = 0.005, 1e-4
 

@@ -1,4 +1,4 @@
-"""A trace as a motion, for everything that draws motions."""
+"""A trace as a motion, for all code that draws motions."""
 
 from __future__ import annotations
 

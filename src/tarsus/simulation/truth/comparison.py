@@ -1,4 +1,4 @@
-"""A planned motion beside what physics makes of it."""
+"""A planned motion, compared with its execution in physics."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ class Truth:
     trace : Trace
         What the robot did.
     outcome : Outcome
-        The same in numbers.
+        The trace in numbers.
     planned_peak, planned_rms : array, shape (3,)
         Peak and root mean square torque of coxa, femur and tibia as `joint_loads` predicts them from vertical forces,
         of the leg where they are greatest [N m].
@@ -77,7 +77,7 @@ def compare(
     Raises
     ------
     MissingDataError
-        If the mass of the body or of a link is unknown, or a servo for ``"catalogue"``.
+        If the mass of the body or of a link is unknown; with ``"catalogue"``, also if a servo is.
     SimulationError
         If the simulation becomes unstable.
     """

@@ -1,4 +1,4 @@
-"""What a simulated robot did, in numbers: way, slip, tilt, torques, energy, falls and stalls."""
+"""What a simulated robot did, in numbers: distance, slip, tilt, torques, energy, falls and stalls."""
 
 from __future__ import annotations
 
@@ -19,13 +19,13 @@ if TYPE_CHECKING:
 __all__ = ["FALLEN", "Outcome"]
 
 FALLEN = math.radians(45)
-"""A robot that is this much more inclined than commanded has fallen [rad]."""
+"""A robot whose upward axis is further than this from the commanded one has fallen [rad]."""
 
 # A body may touch the ground this long before and after it is commanded to rest on it [s].
 _BELLY_MARGIN = 1.0
-# A servo that is saturated for this long stalls [s].
+# A servo that is saturated for this long counts as stalled [s].
 _STALL = 0.5
-# Fraction of the commanded way below which a robot is stuck, where it is at least this long [m].
+# A robot that covers less than this fraction of the commanded distance is stuck; only from this distance on [m].
 _STUCK, _WAY = 0.5, 0.05
 
 
@@ -45,20 +45,21 @@ class Outcome:
     tilt : float
         Greatest angle between the body's upward axis and the commanded one [rad].
     sag : float
-        Greatest height by which the body is lower than commanded, over that at the start [m].
+        Greatest height by which the body is lower than commanded, beyond that at the start [m].
     slip : float
-        Way that the contact points slide over the ground, mean of all feet [m].
+        Distance that the contact points slide over the ground, mean of all feet [m].
     peak_torque, rms_torque : array, shape (3,)
-        Of coxa, femur and tibia: that of the leg where it is greatest [N m].
+        Peak and root mean square torque of coxa, femur and tibia, of the leg where it is greatest [N m].
     saturated : array, shape (3,)
-        Fraction of the time in which the servos of coxa, femur and tibia give all they can, of the leg where it is
-        greatest.
+        Fraction of the time in which the servos of coxa, femur and tibia give all the torque that they can, of the leg
+        where it is greatest.
     energy : float
         Positive mechanical work of all servos [J].
     cost_of_transport : float
-        Energy over weight times distance between start and end; infinite without any.
+        Energy divided by weight and distance between start and end; infinite where these coincide.
     fell_at : float or None
-        When the robot fell: its body touched the ground, or was inclined by more than 45 deg [s].
+        When the robot fell [s]: its body touched the ground without being commanded to rest on it, or its upward
+        axis was more than 45 deg from the commanded one. None if it did not fall.
     stalls : tuple of str
         What did not move as commanded, a line each.
     """
@@ -119,14 +120,14 @@ class Outcome:
 
     @property
     def way_ratio(self) -> float:
-        """Way along the line to the commanded end over the commanded one; NaN where there is none."""
+        """Distance covered along the line to the commanded end, over the commanded distance; NaN where that is tiny."""
         x, y, _ = self.commanded_end
         length = math.hypot(x, y)
         return (x * self.end[0] + y * self.end[1]) / length**2 if length >= _MEASURABLE[0] else math.nan
 
     @property
     def turn_ratio(self) -> float:
-        """Total yaw over the commanded one; NaN where there is none."""
+        """Total yaw over the commanded one; NaN where that is tiny."""
         turn = self.commanded_end[2]
         return self.end[2] / turn if abs(turn) >= _MEASURABLE[1] else math.nan
 
@@ -137,7 +138,7 @@ class Outcome:
         return (*fell, *self.stalls)
 
 
-# Least way and turn of which a ratio is given [m, rad].
+# Least commanded distance and turn for which a ratio is given [m, rad].
 _MEASURABLE = (0.01, math.radians(5))
 
 
@@ -162,7 +163,7 @@ def _fall(trace: Trace, tilt: Float[np.ndarray, "n"]) -> float | None:
 
 
 def _near(time: Float[np.ndarray, "n"], marked: Bool[np.ndarray, "n"]) -> Bool[np.ndarray, "n"]:
-    """Return which times are within the margin of one that is marked."""
+    """Return which times are within `_BELLY_MARGIN` of one that is marked."""
     times = time[marked]
     if not len(times):
         return marked

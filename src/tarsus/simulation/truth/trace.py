@@ -1,4 +1,4 @@
-"""What a simulated robot did, sample by sample, beside what was commanded."""
+"""What a simulated robot did, sample by sample, and what was commanded."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ class Trace:
     robot : Robot
         Which robot.
     time : array, shape (n,)
-        From the start [s].
+        Time since the start [s].
     commanded_body : Pose
         Pose of B in G that was commanded, with batch axes ``(n,)``.
     commanded_angles : array, shape (n, legs, 3)
@@ -47,9 +47,9 @@ class Trace:
     saturated : array of bool, shape (n, legs, 3)
         Whether the servos gave all the torque that they can at their speed.
     foot_forces : array, shape (n, legs, 3)
-        Of the ground on the feet, in G [N].
+        Forces of the ground on the feet, in G [N].
     slip_speeds : array, shape (n, legs)
-        Of the feet's contact points over the ground [m/s].
+        Speeds of the feet's contact points over the ground [m/s].
     body_touches : array of bool, shape (n,)
         Whether the body is in contact with the ground.
     """
@@ -77,7 +77,7 @@ class Trace:
         robot : Robot
             Which robot.
         commanded : sequence of ControlOutput
-            What was executed up to each state.
+            What was executed in the tick that led to each state.
         states : sequence of PlantState
             The states.
         """

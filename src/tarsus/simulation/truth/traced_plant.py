@@ -1,4 +1,4 @@
-"""A simulated plant that keeps what it did, and the playback of planned motions on it."""
+"""A simulated plant that records what it does, and the playback of planned motions on it."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ _HOLD = 0.5
 
 @represented("robot", "plant")
 class TracedPlant:
-    """A `Plant` that keeps the exact state of a simulated one after every tick.
+    """A `Plant` that records the exact state of a simulated plant after every tick.
 
     Parameters
     ----------
@@ -84,7 +84,7 @@ def play(motion: Motion, plant: SimulatedPlant) -> Trace:
     Raises
     ------
     InputError
-        If the plant is another robot, or the robot starts inside the terrain.
+        If the plant is of another robot, or the robot starts inside the terrain.
     SimulationError
         If the simulation becomes unstable.
     """
