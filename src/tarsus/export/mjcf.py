@@ -21,9 +21,9 @@ def to_mjcf(robot: Robot, *, terrain: Terrain | None = None, servos: Any = "cata
     """Return a robot on a terrain as an MJCF document.
 
     The model is that of `tarsus.simulation.model`, with position actuators in place of the servos of
-    `SimulatedPlant`: of their stiffness, that of control loop and gears in series, within their stall torques.
-    Backlash, dead band, delays and the torque-speed line beyond its damping are not in it. The document needs no other
-    file, except for height fields.
+    `SimulatedPlant`. Their gain is the stiffness of control loop and gears in series, their limits are the stall
+    torques. Of the torque-speed line it has only the damping; it has no backlash, dead band or delays. The document
+    needs no other file, except for height fields.
 
     Parameters
     ----------
@@ -37,7 +37,7 @@ def to_mjcf(robot: Robot, *, terrain: Terrain | None = None, servos: Any = "cata
     Raises
     ------
     MissingDataError
-        If the mass of the body or of a link is unknown, or a servo for ``"catalogue"``.
+        If the mass of the body or of a link is unknown; with ``"catalogue"``, also if a servo is.
     InputError
         If the robot is a batch.
     TarsusError
@@ -51,5 +51,5 @@ def to_mjcf(robot: Robot, *, terrain: Terrain | None = None, servos: Any = "cata
         actuator.ctrlrange = np.asarray(robot.limits[leg, joint])
         if math.isfinite(servo.stall_torque):
             actuator.forcerange = (-servo.stall_torque, servo.stall_torque)
-    spec.compile()  # a document can only be written of a model that compiles
+    spec.compile()  # only a model that compiles can be written as a document
     return str(spec.to_xml())

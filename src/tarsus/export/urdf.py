@@ -19,18 +19,18 @@ if TYPE_CHECKING:
 
 __all__ = ["to_urdf"]
 
-# Greatest torque in the file of a joint whose servo is unknown [N m]: URDF has no "unknown".
+# Effort in the file of a joint whose servo is unknown [N m], as URDF has no value for that.
 _UNKNOWN_TORQUE = 100.0
-# Thickness of a body without a size [m], radius of the links' cylinders [m], and edge of the box that is the foot where
-# its radius is unknown [m]: without a shape it would sink into the ground, and a ball would be read back as the foot's.
+# Thickness of a body of unknown size, radius of the links' cylinders, and edge of the box that stands for a foot of
+# unknown radius [m]: without a shape it would sink into the ground, and a ball's radius would be read back as its own.
 _PLATE, _LINK_RADIUS, _FOOT_EDGE = 0.002, 0.006, 0.002
-# Share of the tibia's mass that is the foot's, which is a link of its own: Bullet gives a link without inertia 1 kg.
+# Fraction of the tibia's mass that goes to the foot, a separate link: Bullet takes a link without inertia to have 1 kg.
 _FOOT_SHARE = 0.01
 _ABOUT = """
  Made by Tarsus from the robot file of {name}. Frames and angles are those of its conventions: B in the body, x forward,
  y to the left, z up; coxae turn about z, femurs and tibias about -y. Inertias are those of uniform boxes. {unknown}
 """
-# For MuJoCo: the feet and the body stay links of their own.
+# Options for MuJoCo, with which the feet and the body stay separate bodies.
 _MUJOCO = {"fusestatic": "false", "discardvisual": "false", "strippath": "false"}
 
 
@@ -39,8 +39,8 @@ def to_urdf(robot: Robot) -> str:
 
     Links are named ``body`` and by leg and link (``front_left_femur``), joints like the link that they move; each foot
     is a link of its own at the end of the tibia (``front_left_foot``), fixed by a joint, with a hundredth of the
-    tibia's mass. What touches the ground is a shape of the tibia: the ball of the foot, or a box of 2 mm where its
-    radius is unknown.
+    tibia's mass. The shape that touches the ground belongs to the tibia: the ball of the foot, or a box of 2 mm
+    where its radius is unknown.
 
     Parameters
     ----------
@@ -110,7 +110,7 @@ def _name(robot: Robot, leg: int, part: str) -> str:
 
 
 def _divided(tibia: RigidBody, foot: Float[np.ndarray, "3"]) -> tuple[RigidBody, RigidBody]:
-    """Return tibia and foot, which together are the tibia; both centres of mass are on its axis."""
+    """Return the tibia without its foot, and the foot, which together have the tibia's mass, centre and inertia."""
     mass, small = (1 - _FOOT_SHARE) * tibia.mass, _FOOT_SHARE * tibia.mass
     centre = (tibia.centre - _FOOT_SHARE * foot) / (1 - _FOOT_SHARE)
     ball = 0.4 * small * _LINK_RADIUS**2

@@ -1,4 +1,4 @@
-"""The text of a URDF file as links and joints, with all numbers checked."""
+"""Links and joints from the text of a URDF file, with all numbers checked."""
 
 from __future__ import annotations
 
@@ -34,11 +34,11 @@ class Shape(NamedTuple):
     size : array
         Edges of a box, radius and length of a cylinder, radius of a sphere, scale of a mesh [m].
     T_link_shape : array, shape (4, 4)
-        Its place.
+        Its pose in the frame of the link.
     file : str
         Name of the file of a mesh.
     collision : bool
-        Whether it is for collisions.
+        Whether it is a collision shape, not a visual one.
     """
 
     kind: str
@@ -77,13 +77,13 @@ class Joint(NamedTuple):
     name, kind, parent, child : str
         Its name and type, and the links that it joins.
     T_parent_child : array, shape (4, 4)
-        The place of the child link with the joint at zero.
+        Pose of the child link in the frame of the parent, with the joint at zero.
     axis : array, shape (3,)
         Unit vector of its axis, in the frame of the child.
     limits : (float, float) or None
-        Lower and upper limit [rad]; None for none.
+        Lower and upper limit [rad]; None where there are none.
     effort, speed : float or None
-        Greatest torque [N m] and speed [rad/s].
+        Greatest torque [N m] and speed [rad/s]; None where the file has none.
     mimics : bool
         Whether it follows another joint.
     """
@@ -131,7 +131,7 @@ def parse_urdf(text: str, *, where: str) -> UrdfDocument:
     Raises
     ------
     InputError
-        If it is not a URDF file, or has a number that is none.
+        If it is not a URDF file, or has something else in place of a number.
     """
     if len(text) > _LARGEST:
         raise InputError(f"{where} has {len(text)} characters; at most {_LARGEST} are read")

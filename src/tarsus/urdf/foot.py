@@ -19,9 +19,9 @@ if TYPE_CHECKING:
 __all__ = ["Foot", "foot_of"]
 
 _NAMES = re.compile(r"foot|feet|toe|tip|tarsus|ee$|end_?effector", re.IGNORECASE)
-# A sphere is the ball of the foot where its centre is this near to the foot point [m].
+# A sphere centred this near to the foot point is the foot's ball; a fixed link this near to the knee is no foot [m].
 _NEAR = 1e-3
-# A binary STL file: a header, the number of triangles, and 50 bytes for each.
+# A binary STL file: a header with the number of triangles [bytes], and then the triangles, of 50 bytes each.
 _HEADER, _TRIANGLE = 84, np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attribute", "<u2")])
 
 
@@ -31,7 +31,7 @@ class Foot(NamedTuple):
     Attributes
     ----------
     point : array, shape (3,)
-        Its point, in the frame of the body's link with all joints at zero [m].
+        The foot point, in the frame of the body's link with all joints at zero [m].
     radius : float
         Radius of its ball; 0 where the file has none [m].
     source : str
@@ -51,7 +51,7 @@ def foot_of(part: Part, knee: Float[np.ndarray, "3"], *, folder: Path | None) ->
     part : Part
         What the tibia joint moves.
     knee : array, shape (3,)
-        A point of that joint's axis [m].
+        A point on that joint's axis, in the frame of the body's link [m].
     folder : Path or None
         Folder of the file, for its meshes.
     """
@@ -65,7 +65,7 @@ def foot_of(part: Part, knee: Float[np.ndarray, "3"], *, folder: Path | None) ->
     found = [(point, ball, shape) for placed in part.links for shape, point, ball in _extents(placed, knee, folder)]
     if not found:
         return None
-    # Shapes for collisions are what the ground meets; of equal ends, the centre of a ball is the foot point.
+    # Collision shapes are preferred, as these touch the ground; a ball prevails over a shape that ends at its centre.
     solid = [each for each in found if each[2].collision] or found
     point, ball, shape = max(solid, key=lambda each: float(np.linalg.norm(each[0] - knee)) + each[1])
     what = "the centre of a sphere" if ball else f"the end of a {shape.kind}"
@@ -89,7 +89,7 @@ def _radius(part: Part, point: Float[np.ndarray, "3"]) -> float:
 def _extents(
     placed: Placed, knee: Float[np.ndarray, "3"], folder: Path | None
 ) -> Iterator[tuple[Shape, Float[np.ndarray, "3"], float]]:
-    """Yield the farthest point of each shape from the knee, and the radius of a sphere around it."""
+    """Yield each shape, its farthest point from the knee, and its radius if it is a sphere, else 0."""
     for shape in placed.link.shapes:
         place = placed.T_body_link @ shape.T_link_shape
         points = _points(shape, folder)
@@ -100,7 +100,7 @@ def _extents(
 
 
 def _points(shape: Shape, folder: Path | None) -> Float[np.ndarray, "n 3"]:
-    """Return the points among which a shape's ends are: its centre, the ends of its middle line, or its vertices."""
+    """Return the candidates for a shape's end: a sphere's centre, the ends of a middle line, or a mesh's vertices."""
     if shape.kind == "mesh":
         vertices: np.ndarray = _vertices(shape.file, folder) * shape.size
         return vertices
@@ -115,7 +115,7 @@ def _points(shape: Shape, folder: Path | None) -> Float[np.ndarray, "n 3"]:
 
 
 def _vertices(name: str, folder: Path | None) -> Float[np.ndarray, "n 3"]:
-    """Return the vertices of a mesh in a binary STL file near the robot's file; none if it can't be had."""
+    """Return the vertices of a mesh in a binary STL file near the robot's file; none if it can't be read."""
     words = [word for word in re.sub(r"^\w+://", "", name).split("/") if word not in ("", ".", "..")]
     places = [] if folder is None else [folder, *folder.resolve().parents][:4]
     for place, start in itertools.product(places, range(len(words))):

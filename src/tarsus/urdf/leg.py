@@ -17,9 +17,9 @@ if TYPE_CHECKING:
 
 __all__ = ["FittedLeg", "fitted_leg", "mass_of"]
 
-# Greatest angle of an axis to where the model has it [rad]: beyond, the leg is of another kind.
+# Greatest angle between a joint's axis and its direction in the model [rad]; beyond it, the leg is of another kind.
 _MOST_TILTED = math.radians(20)
-# Least angle and length that are worth a remark [rad, m].
+# Angle and length above which a deviation is worth a remark [rad, m]; shorter lengths count as 0.
 _ANGLE, _LENGTH = math.radians(0.01), 1e-4
 _HALF_TURN = math.pi
 
@@ -32,15 +32,15 @@ class FittedLeg(NamedTuple):
     mount : array, shape (3,)
         Position of the coxa axis in B [m].
     yaw : float
-        Its direction [rad].
+        Direction of the leg about z at zero [rad].
     lengths : array, shape (3,)
-        Coxa, femur and tibia [m].
+        Lengths of coxa, femur and tibia [m].
     offset : array, shape (2,)
         Offset of the femur axis, sideways and vertical [m].
     limits : array, shape (3, 2)
         Limits of the joints [rad].
     masses : array, shape (3,), or None
-        Of the links [kg]; None where one is unknown.
+        Masses of the links [kg]; None where one is unknown.
     centres : array, shape (3,)
         Distances of the centres of mass from the inner joints, along the links [m].
     foot_radius : float
@@ -104,7 +104,7 @@ def fitted_leg(
     Raises
     ------
     InputError
-        If its axes are not those of coxa, femur and tibia, or two of them coincide.
+        If its axes are not those of coxa, femur and tibia, or femur or tibia has no length.
     """
     points, directions = axes_of(chain, T_robot_body)
     tip = T_robot_body[:3, :3] @ foot.point + T_robot_body[:3, 3]
@@ -115,7 +115,7 @@ def fitted_leg(
     across /= np.linalg.norm(across)
     remarks.append(_tilted(chain, 2, directions[2], across, "the tibia axis", "the femur axis"))
     outward = np.cross(across, up)
-    # The foot is outside the coxa axis; where it is over it, the leg points away from the middle of the robot.
+    # The leg points from the coxa axis to the foot; with the foot on that axis, away from the middle of the robot.
     reach = (tip - points[0]) @ outward
     if abs(reach) < _LENGTH:
         reach = (points[0] - middle) @ outward
@@ -165,7 +165,7 @@ def fitted_leg(
 
 
 def mass_of(part: Part) -> float | None:
-    """Return the mass of links that are one, or None if it is unknown.
+    """Return the mass of links that are fixed to one another, or None if no link has one.
 
     Parameters
     ----------
@@ -179,7 +179,7 @@ def mass_of(part: Part) -> float | None:
 def _tilted(
     chain: Chain, joint: int, direction: Float[np.ndarray, "3"], wanted: Float[np.ndarray, "3"], axis: str, of: str
 ) -> str:
-    """Return a remark on an axis that is not where the model has it."""
+    """Return a remark on an axis that is inclined to its direction in the model; empty if it is not."""
     length = float(np.linalg.norm(wanted))
     along = abs(float(direction @ wanted)) / length if length else 0.0
     angle = math.acos(min(1.0, along))
@@ -193,7 +193,7 @@ def _tilted(
 
 
 def _beside(distance: float, what: str) -> str:
-    """Return a remark on a joint's origin beside the leg's plane, which matters for pictures alone."""
+    """Return a remark on a joint's origin beside the leg's plane, which only pictures show; empty if it is within."""
     return f"{what} lies {1000 * distance:.1f} mm beside the plane of the foot" if distance > _LENGTH else ""
 
 
@@ -209,7 +209,7 @@ def _limits(
             said.append(f"the {JOINTS[joint]} has no limits: -180 to 180 deg assumed")
             continue
         low, high = sorted(sign * limit + zero for limit in given)
-        # Whole turns more or less are the same; the least part of the range is then beyond half a turn.
+        # Whole turns change no pose; they are removed so that as little of the range as possible is beyond half a turn.
         turns = 2 * _HALF_TURN * round((low + high) / 2 / (2 * _HALF_TURN))
         low, high = low - turns, high - turns
         found[joint] = max(low, -_HALF_TURN), min(high, _HALF_TURN)
@@ -229,7 +229,7 @@ def _centre(
     step: Float[np.ndarray, "3"],
     name: str,
 ) -> tuple[float, str]:
-    """Return how far along its link a centre of mass is, and a remark where it lies beside the link."""
+    """Return the distance of a centre of mass along its link, and a remark where it lies beside the link."""
     length = float(np.linalg.norm(step))
     centre = centre_of(part)
     if centre is None or length < _LENGTH:
@@ -242,7 +242,7 @@ def _centre(
 
 
 def centre_of(part: Part) -> Float[np.ndarray, "3"] | None:
-    """Return the centre of mass of links that are one, in the frame of the body's link; None without mass [m].
+    """Return the centre of mass of links fixed to one another, in the frame of the body's link [m]; None without mass.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""A robot from a URDF file, with what the file lacks and what does not fit a robot file."""
+"""A robot from a URDF file, with remarks on what the file lacks and what does not fit a robot file."""
 
 from __future__ import annotations
 
@@ -33,12 +33,12 @@ __all__ = ["DIRECTIONS", "ImportedRobot", "robot_from_urdf", "urdf_robot"]
 DIRECTIONS = {"x": 0.0, "y": 90.0, "-x": 180.0, "-y": -90.0}
 """Axes of the file that may point forward, and their direction in the file [deg]."""
 
-# Boxes thinner than this stand for a body whose height is unknown [m].
+# Boxes up to this thickness are no body: they stand for one of unknown height [m].
 _PLATE = 0.005
 _SAMPLES, _SEED = 200, 0
-# Distance of the origin from the middle of the coxa axes that is worth a remark [m].
+# Distance of the origin from the middle of the coxa axes above which it is worth a remark [m].
 _OFF_CENTRE = 0.02
-# Decimals in mm and degrees: a tenth of a nanometre; for degrees one more, 1.7e-10 rad.
+# Decimals to which lengths in mm are rounded, a tenth of a nanometre; angles in degrees get one more, 1.7e-10 rad.
 _DIGITS = 7
 _SIX = ("front", "middle", "rear")
 _FOUR = ("front", "rear")
@@ -98,7 +98,7 @@ def robot_from_urdf(
     Raises
     ------
     InputError
-        If it can't be read, is no URDF file, or its robot has not the legs of a robot file.
+        If it can't be read, is not a URDF file, or its robot does not have legs as in robot files.
     """
     try:
         text = Path(path).read_text(encoding="utf-8")
@@ -122,7 +122,7 @@ def urdf_robot(
     """Return the robot of a URDF document.
 
     The legs are found by how links hang together, whatever their names and frames: chains of three revolute joints from
-    one link. B is the frame of that link, turned so that x points forward, and with `centre` moved.
+    one link. B is the frame of that link, turned so that x points forward; with `centre` its origin is moved.
 
     Parameters
     ----------
@@ -138,7 +138,7 @@ def urdf_robot(
     Raises
     ------
     InputError
-        If it is no URDF file, or its robot has not the legs of a robot file.
+        If it is not a URDF file, or its robot does not have legs as in robot files.
     """
     if forward not in DIRECTIONS:
         raise InputError(f"forward is {forward!r}; it must be one of {', '.join(DIRECTIONS)}")
@@ -181,13 +181,13 @@ def _turn(angle: float) -> Float[np.ndarray, "4 4"]:
 
 
 def _lengths(values: Any) -> Float[np.ndarray, "..."]:
-    """Return lengths [m] that are short decimals in mm: their rounding is less than the noise of the computation."""
+    """Return lengths [m], rounded to short decimals in mm, which removes the noise of the computation."""
     milli = np.round(np.asarray(values, dtype=float) * 1000, _DIGITS) + 0.0
     return _each(lambda value: from_milli(to_decimal(value)), milli)
 
 
 def _angles(values: Any) -> Float[np.ndarray, "..."]:
-    """Return angles [rad] that are short decimals in degrees."""
+    """Return angles [rad], rounded to short decimals in degrees."""
     degrees = np.round(np.degrees(np.asarray(values, dtype=float)), _DIGITS + 1) + 0.0
     return _each(lambda value: radians(to_decimal(value)), degrees)
 
@@ -197,7 +197,7 @@ def _each(convert: Callable[[float], float], values: Float[np.ndarray, "..."]) -
 
 
 def _foot(chain: Chain, given: tuple[float, float, float] | None, *, folder: Path | None, where: str) -> Foot:
-    """Return the foot of a leg, where it is given or the file has it."""
+    """Return the foot of a leg: the given point, or else the one that the file has."""
     place = chain.parts[-1].links[0].T_body_link
     if given is not None:
         return Foot(place[:3, :3] @ np.array(given) + place[:3, 3], 0.0, "the given point")
@@ -212,7 +212,7 @@ def _foot(chain: Chain, given: tuple[float, float, float] | None, *, folder: Pat
 
 
 def _order(legs: list[FittedLeg]) -> list[int]:
-    """Return the order of the legs in a robot file, by the numbers that are written to it."""
+    """Return the order of the legs in a robot file, from the rounded values that it will contain."""
     mounts, yaw = _lengths([leg.mount for leg in legs]), _angles([leg.yaw for leg in legs])
     return ring(mounts[:, 0] + 1j * mounts[:, 1], np.exp(1j * yaw))
 
@@ -287,7 +287,7 @@ def _body_size(tree: Tree, T_robot_body: Float[np.ndarray, "4 4"]) -> tuple[Floa
 
 
 def _remarks(tree: Tree, legs: list[FittedLeg], feet: list[Foot], names: tuple[str, ...], forward: str) -> list[str]:
-    """Return the remarks on the legs, equal ones together, and on what the file has no place for."""
+    """Return remarks on legs (equal ones together), joints without a place in robot files, servos, and names."""
     by_text: dict[str, list[str]] = {}
     for leg, foot, name in zip(legs, feet, names, strict=True):
         radius = [] if foot.radius else ["the radius of the foot is missing"]
@@ -309,7 +309,7 @@ def _remarks(tree: Tree, legs: list[FittedLeg], feet: list[Foot], names: tuple[s
 
 
 def _servo_figures(tree: Tree) -> str:
-    """Return the torques and speeds of the file, which may be those of its servos."""
+    """Return the torques and speeds of the file, which may be those of its servos, where all legs agree."""
     figures = []
     for number, joint in enumerate(JOINTS):
         found = {(chain.joints[number].effort, chain.joints[number].speed) for chain in tree.legs}
@@ -334,7 +334,7 @@ def _contradictions(legs: list[FittedLeg], names: tuple[str, ...], forward: str)
 
 
 def _in_codes(words: str, marks: str) -> int:
-    """Return 1 or -1 for a leg that codes such as LF or R2 put at the first or a further letter of `marks`, else 0."""
+    """Return 1 where codes such as LF or R2 have the first letter of `marks`, -1 where they have another, else 0."""
     codes = re.findall(r"\b(?:[lr][fmbh\d]|[fmbh][lr])\b", words.lower())
     found = {sign for code in codes for mark, sign in ((marks[0], 1), (marks[1:], -1)) if set(code) & set(mark)}
     return found.pop() if len(found) == 1 else 0

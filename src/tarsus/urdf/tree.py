@@ -1,4 +1,4 @@
-"""The legs of a URDF file: chains of three joints, found by how links hang together."""
+"""The legs of a URDF file: chains of three joints, found from the tree of links alone."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ class Placed(NamedTuple):
     link : Link
         The link.
     T_body_link : array, shape (4, 4)
-        Its place in the frame of the body's link.
+        Its pose in the frame of the body's link.
     """
 
     link: Link
@@ -34,14 +34,14 @@ class Placed(NamedTuple):
 
 
 class Part(NamedTuple):
-    """Links that fixed joints make one.
+    """Links that fixed joints connect, which move as one.
 
     Attributes
     ----------
     links : tuple of Placed
-        The links, the first that on which the others are fixed.
+        The links; the others are fixed to the first.
     joints : tuple of Joint
-        The joints, other than fixed ones, that lead from them.
+        The joints, other than fixed ones, that start from them.
     """
 
     links: tuple[Placed, ...]
@@ -56,7 +56,7 @@ class Chain(NamedTuple):
     joints : tuple of Joint
         Coxa, femur and tibia joint.
     parts : tuple of Part
-        What each of them moves; the last has also what further joints move, held at zero.
+        What each of them moves, including what further joints move, which are held at zero.
     held : tuple of str
         Names of those further joints.
     """
@@ -72,7 +72,7 @@ class Tree(NamedTuple):
     Attributes
     ----------
     body : Part
-        The body, with what is neither body nor leg, held at zero.
+        The body, with links that belong to no leg, whose joints are held at zero.
     legs : tuple of Chain
         The legs.
     ignored : tuple of str
@@ -97,7 +97,7 @@ def legs_of(document: UrdfDocument, *, where: str) -> Tree:
     Raises
     ------
     InputError
-        If links and joints are no tree, or fewer than four legs start from any link.
+        If links and joints do not form a tree, or fewer than four legs start from any link.
     """
     _check_tree(document, where)
     children: dict[str, list[Joint]] = {}
@@ -105,7 +105,7 @@ def legs_of(document: UrdfDocument, *, where: str) -> Tree:
         children.setdefault(joint.parent, []).append(joint)
     found = {name: [_depth(joint, children) for joint in _leaving(name, children)] for name in document.links}
     above = {joint.child: joint for joint in document.joints}
-    # Of links that are fixed on each other the legs are those of all: the nearest to the legs is the body.
+    # Of links fixed to one another several may lead to the same legs; the one nearest to the legs is the body.
     base = max(document.links, key=lambda name: (sum(depth >= _JOINTS for depth in found[name]), _level(name, above)))
     legs = sum(depth >= _JOINTS for depth in found[base])
     if legs < _FEWEST:
@@ -149,7 +149,7 @@ def _level(name: str, above: dict[str, Joint]) -> int:
 
 
 def _leaving(name: str, children: dict[str, list[Joint]]) -> list[Joint]:
-    """Return the joints, other than fixed ones, that lead from a link and from what is fixed on it."""
+    """Return the joints, other than fixed ones, that start from a link and from the links fixed to it."""
     found = []
     for joint in children.get(name, ()):
         found += _leaving(joint.child, children) if joint.kind == "fixed" else [joint]
@@ -166,7 +166,7 @@ def _depth(joint: Joint, children: dict[str, list[Joint]]) -> int:
 def _part(
     document: UrdfDocument, name: str, T_body_link: Float[np.ndarray, "4 4"], children: dict[str, list[Joint]]
 ) -> Part:
-    """Return a link with all that is fixed on it."""
+    """Return a link with all links that are fixed to it."""
     links, joints = [Placed(document.links[name], T_body_link)], list[Joint]()
     for joint in children.get(name, ()):
         if joint.kind == "fixed":

@@ -25,7 +25,7 @@ FALLEN = math.radians(45)
 _BELLY_MARGIN = 1.0
 # A servo that is saturated for this long counts as stalled [s].
 _STALL = 0.5
-# A robot that covers less than this fraction of the commanded distance is stuck; only from this distance on [m].
+# A robot is stuck if it covers less than this fraction of a commanded distance that is at least this long [m].
 _STUCK, _WAY = 0.5, 0.05
 
 
