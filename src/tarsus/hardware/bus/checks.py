@@ -21,7 +21,7 @@ __all__ = [
 
 
 def checked_numbers(bus: str, what: str, known: range, numbers: Iterable[int]) -> tuple[int, ...]:
-    """Return numbers of what a bus has.
+    """Return numbers, of ids or inputs, that a bus has.
 
     Parameters
     ----------
@@ -30,14 +30,14 @@ def checked_numbers(bus: str, what: str, known: range, numbers: Iterable[int]) -
     what : str
         What is numbered: ``"id"``, ``"input"``.
     known : range
-        The numbers that there are.
+        The numbers that the bus has.
     numbers : iterable of int
-        Those that are asked for.
+        The numbers asked for.
 
     Raises
     ------
     InputError
-        If one of them is none of this bus.
+        If the bus does not have one of them.
     """
     found = []
     for asked in numbers:
@@ -63,7 +63,7 @@ def checked_ids(bus: str, can: Capabilities, ids: Iterable[int]) -> tuple[int, .
     Raises
     ------
     InputError
-        If one of them is none of this bus.
+        If the bus does not have one of them.
     """
     return tuple(dict.fromkeys(checked_numbers(bus, "id", can.ids, ids)))
 
@@ -89,7 +89,7 @@ def checked_goals(bus: str, can: Capabilities, goals: Mapping[int, float]) -> di
     Raises
     ------
     InputError
-        If an id is none of this bus, or a goal is NaN or outside its range.
+        If the bus does not have an id, or a goal is NaN or outside the range of the bus.
     """
     return {id: _checked(bus, can, f"goal of id {id}", goals[id]) for id in checked_ids(bus, can, goals)}
 
@@ -111,7 +111,7 @@ def checked_range(bus: str, can: Capabilities, id: int, lowest: float, highest: 
     Raises
     ------
     InputError
-        If the id is none of this bus, or the range is empty or outside that of the bus.
+        If the bus does not have the id, or the range is empty or outside that of the bus.
     """
     checked_ids(bus, can, (id,))
     low = math.ceil(_checked(bus, can, f"lower limit of id {id}", lowest))
@@ -122,7 +122,7 @@ def checked_range(bus: str, can: Capabilities, id: int, lowest: float, highest: 
 
 
 def checked_speed(bus: str, can: Capabilities, speed: float | None) -> float | None:
-    """Return a speed limit, or None for the servo's own.
+    """Return a checked speed limit, or None for the servo's own highest speed.
 
     Parameters
     ----------
@@ -131,7 +131,7 @@ def checked_speed(bus: str, can: Capabilities, speed: float | None) -> float | N
     can : Capabilities
         What it can do.
     speed : float or None
-        In the unit of the bus a second.
+        Speed limit, in the unit of the bus per second.
 
     Raises
     ------
@@ -144,7 +144,7 @@ def checked_speed(bus: str, can: Capabilities, speed: float | None) -> float | N
 
 
 def checked_share(bus: str, share: float) -> float:
-    """Return a share of the highest torque.
+    """Return a checked share of the highest torque.
 
     Parameters
     ----------
@@ -164,7 +164,7 @@ def checked_share(bus: str, share: float) -> float:
 
 
 def checked_time(bus: str, can: Capabilities, seconds: float | None) -> float | None:
-    """Return the time of a watchdog, or None for never.
+    """Return the checked time of a watchdog, or None for never.
 
     Parameters
     ----------
@@ -178,7 +178,7 @@ def checked_time(bus: str, can: Capabilities, seconds: float | None) -> float | 
     Raises
     ------
     InputError
-        If the bus can't time that.
+        If the time is outside the range of the bus's watchdog.
     """
     low, high = can.watchdog or (0.0, math.inf)
     if seconds is not None and not low <= seconds <= high:

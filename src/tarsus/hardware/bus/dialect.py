@@ -1,4 +1,4 @@
-"""What differs between servos that are read and written by registers: their packets, tables and habits."""
+"""What differs between servos that are read and written by registers: packets, registers, features, factory delays."""
 
 from __future__ import annotations
 
@@ -19,15 +19,15 @@ class Dialect:
     Attributes
     ----------
     scan : callable
-        Finds packets in bytes.
+        Returns the packets found in bytes.
     header : bytes
-        With which packets begin, before the id.
+        Bytes with which packets begin, before the id.
     read, write, sync_write : callable
-        Packets that read registers of a servo, write them, and write those of several servos.
+        Return the packet that reads registers of a servo, writes them, or writes registers of several servos.
     errors_in : callable
-        What the error byte of an answer means.
+        Returns what the error byte of an answer means.
     answer : int
-        How many bytes an answer has beside its data.
+        How many bytes an answer has in addition to its data.
     byteorder : str
         ``"little"`` or ``"big"``.
     """
@@ -83,20 +83,20 @@ class Series:
     capabilities : Capabilities
         What it can do.
     goal : tuple of str
-        Names of the registers from the goal on that are written with each goal; others than the goal and the speed
-        are written as 0.
+        Names of the consecutive registers, from the goal on, that are written with each goal; all but the goal and the
+        speed are written as 0.
     telemetry : tuple of str
-        First and last register that are read for telemetry.
+        First and last of the consecutive registers that are read for telemetry.
     read_many : callable or None
-        Packet that asks several servos at once.
+        Returns the packet that asks several servos at once; None where there is none.
     read_fast : callable or None
-        Packet that several servos answer with one packet.
+        Returns the packet that several servos answer in one shared packet; None where there is none.
     turnaround : float
-        Time from a request to the answer as servos are delivered [s].
+        Time from a request to the answer with the servos' factory settings [s].
     alarms : mapping of int to str
         What the bits of the register ``hardware_error`` mean, if there is one.
     fastest : int
-        Greatest value of the register for the speed.
+        Greatest value of the speed register.
     """
 
     dialect: Dialect
@@ -126,14 +126,14 @@ def _smart(
         limits=True,
         speed_limit=True,
         torque_limit=torque_limit,
-        # The register counts 20 ms, up to 127 of them.
+        # The register counts in units of 20 ms, up to 127 of them.
         watchdog=(0.02, 2.54) if watchdog else None,
         watchdog_action="hold" if watchdog else "none",
     )
 
 
 _MEASURED = "position speed load voltage temperature"
-# Dynamixel servos are delivered with a return delay of 250 times 2 us.
+# Factory setting of the return delay of Dynamixel servos: 250 times 2 us [s].
 _RETURN_DELAY = 500e-6
 
 SERIES = {

@@ -1,4 +1,4 @@
-"""What comes back to one request, and what is believed of it."""
+"""The answers to one request: which of them are accepted, and what else arrives."""
 
 from __future__ import annotations
 
@@ -17,26 +17,26 @@ class Exchange:
     frame : bytes
         The request.
     ids : collection of int
-        Who is to answer.
+        Ids of the servos that are to answer.
     count : int
         How many bytes of data each answer has.
     sent : bytes
-        What was sent before without an answer: its echo may come now.
+        Frames sent before that nobody answers: their echoes may still arrive.
     belongs : callable, optional
-        Whether a frame answers this request, as far as the protocol tells.
+        Returns whether a frame answers this request, as far as the protocol shows.
 
     Attributes
     ----------
     found : dict of int to Frame
         Answers by id.
     twice : set of int
-        Who answered more than once.
+        Ids that answered more than once.
     other : dict of int to Frame
-        Frames of those who were asked, which answer something else or refuse.
+        Frames by id that are no answer to this request: they answer something else, or refuse it.
     foreign : bytes
-        Whole frames that answer something else.
+        The bytes of all such frames, in the order of their arrival.
     noise : bytes
-        What is no frame.
+        Bytes that belong to no frame, damaged frames, and answers that were withdrawn.
     echo : bool
         Whether the request itself came back.
     """
@@ -58,28 +58,28 @@ class Exchange:
 
     @property
     def complete(self) -> bool:
-        """Whether everybody has answered."""
+        """Whether all servos have answered."""
         return len(self.found) == len(self._ids)
 
     @property
     def refused(self) -> list[int]:
-        """Who has no answer that is believed."""
+        """Ids without an accepted answer, or with more than one answer."""
         return [id for id in self._ids if id not in self.found or id in self.twice]
 
     def take(self, scanned: Scanned) -> None:
-        """Take what has come in.
+        """Sort what has arrived into answers, other frames and noise.
 
         Parameters
         ----------
         scanned : Scanned
-            What was found in it.
+            What was found in the bytes that have arrived.
         """
         self.noise += b"".join(scanned.damaged)
         for answer in scanned.frames:
             if answer.raw == self._frame and not self.echo:
                 self.echo = True
             elif answer.raw in self._sent:
-                # The echo of what nobody answers.
+                # The echo of a frame that nobody answers.
                 continue
             elif answer.id in self.found:
                 self.twice.add(answer.id)
@@ -90,7 +90,7 @@ class Exchange:
                 self.other[answer.id] = answer
 
     def withdraw(self, suspect: Collection[Frame]) -> None:
-        """No longer believe some answers.
+        """Withdraw answers that may be damaged.
 
         Parameters
         ----------
@@ -102,17 +102,17 @@ class Exchange:
                 self.noise += self.found.pop(one.id).raw
 
     def damaged(self, id: int, header: bytes) -> bool:
-        """Return whether it is the answer of a servo that was damaged, rather than missing.
+        """Return whether the answer of a servo was damaged, rather than missing.
 
         Parameters
         ----------
         id : int
             The servo.
         header : bytes
-            With which frames begin.
+            Bytes with which frames begin.
         """
         blamed = [one for one in self.refused if header + bytes((one,)) in self.noise]
-        # If what came tells no id, it may be anybody's.
+        # Where the noise shows none of these ids behind a header, it may come from any servo.
         return id in blamed if blamed else bool(self.noise)
 
     def _wanted(self, answer: Frame) -> bool:

@@ -1,4 +1,4 @@
-"""Inputs of boards: what foot switches are connected to."""
+"""Inputs of boards, to which foot switches are connected."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ __all__ = ["InputBoard"]
 
 @runtime_checkable
 class InputBoard(Protocol):
-    """A board with inputs; which buses are some, `BusCommands.inputs` tells too.
+    """A board with inputs; `BusCommands.inputs` also tells which buses have them, and how many.
 
     Attributes
     ----------
@@ -21,7 +21,7 @@ class InputBoard(Protocol):
     inputs: range
 
     def read_inputs(self, numbers: Sequence[int]) -> tuple[float, ...]:
-        """Return the levels of inputs: voltages as shares of the highest, 0 or 1 where the board tells no more.
+        """Return the levels of inputs: voltages as shares of the highest, or only 0 and 1 from digital inputs.
 
         Parameters
         ----------

@@ -1,4 +1,4 @@
-"""Requests and answers over a line of bytes: who answered, who did not, and what is not to be believed."""
+"""Requests and answers over a line of bytes: who answered, who did not, and which answers are rejected."""
 
 from __future__ import annotations
 
@@ -18,6 +18,7 @@ _WIRING = "Check that it has this id and baud rate, its supply, and the cable to
 _NOISE = "Look for two servos with one id, a loose cable or a wrong baud rate; a lower baud rate helps against noise."
 _TWICE = "Look for two servos with this id: connect them one at a time, and give one another id."
 _REFUSED = "Check that it is a servo of this kind, and its firmware: it has no such registers, or not now."
+# Most reads while waiting for silence; longest answer line of a board, most sent bytes whose echo is expected [bytes].
 _MOST_SETTLING = 8
 _LONGEST_LINE = 64
 _MOST_ECHO = 2048
@@ -39,8 +40,8 @@ def hexadecimal(data: bytes, most: int = 24) -> str:
 class Link:
     """A line on which one side asks and the other answers.
 
-    After an answer that is late or damaged the line is not believed until it has been silent for as long as an answer
-    may be late: what still arrives is thrown away.
+    After a damaged answer, and before servos whose answer is missing are asked again, the link waits until the line has
+    been silent for as long as an answer may be late; what arrives until then is discarded.
 
     Parameters
     ----------
@@ -53,14 +54,14 @@ class Link:
     timeout : float
         Longest time until an answer begins, beyond its time on the wire [s].
     header : bytes
-        With which frames begin, before the id.
+        Bytes with which frames begin, before the id.
     delay : float
-        Time that each servo takes before it answers, as it is delivered [s].
+        Time that each servo takes before it answers, with its factory settings [s].
     errors_in : callable, optional
-        What the code of an answer reports, where it reports errors.
+        Returns the errors that the code of an answer reports; left out where codes report none.
     patience : Patience, optional
-        How long servos are waited for, where that is measured and their answers tell which request they answer;
-        else always as long as `timeout`.
+        Adapts the wait to the servos' measured times, for protocols whose answers show which request they answer;
+        if left out, every wait is `timeout`.
     """
 
     def __init__(
@@ -79,7 +80,7 @@ class Link:
         self._scan, self._header, self._errors_in = scan, header, errors_in
         self._patience = patience
         self._doubtful = False
-        # Whose answer has not come, and since when nobody waits for it any more; None for a board's [s].
+        # When the wait for an answer that did not come ended, by id; None stands for a board [s].
         self._awaited: dict[int | None, float] = {}
         self._sent = b""
 
@@ -104,11 +105,11 @@ class Link:
         frame : bytes
             The frame.
         ids : collection of int
-            Who answers.
+            Ids of the servos that answer.
         count : int
             How many bytes of data each answer has.
         belongs : callable
-            Whether a frame answers this request, as far as the protocol tells.
+            Returns whether a frame answers this request, as far as the protocol shows.
         """
         self._settle(ids)
         self.transport.write(frame)
@@ -148,7 +149,7 @@ class Link:
         size : int, optional
             How many bytes the answer has.
         end : bytes
-            With what the answer ends, if its size is not known.
+            Bytes with which the answer ends, if its size is not known.
 
         Raises
         ------
@@ -169,7 +170,7 @@ class Link:
             if data:
                 continue
             if len(received) == size:
-                # An answer that begins like the request, without an echo before it.
+                # The answer begins like the request; no echo came before it.
                 return received
             self._doubtful = bool(received)
             self._awaited[None] = self.transport.now()
@@ -205,7 +206,7 @@ class Link:
         )
 
     def _error(self, id: int, count: int, received: bytes, exchange: Exchange, late: float, timeout: float) -> BusError:
-        """Return why a servo has no answer that is believed."""
+        """Return the error that tells why a servo has no accepted answer."""
         expected = f"an answer with {count} byte{'s' * (count != 1)} of data"
         kind: type[BusError] = CorruptAnswerError
         refusal = exchange.other.get(id)
@@ -229,7 +230,7 @@ class Link:
         late = [since for id, since in self._awaited.items() if ids is None or id is None or id in ids]
         if not self._doubtful and not late:
             return
-        # Silence since an answer was waited for in vain counts, unless something came or the line is in doubt.
+        # Silence counts from the end of the last wait in vain, unless something has come or the line is in doubt.
         quiet = 0.0 if came or self._doubtful else now - max(late)
         needed = self.timeout if self._patience is None or ids is None else self._patience.usual(ids)
         for _ in range(_MOST_SETTLING):
@@ -241,6 +242,6 @@ class Link:
 
 
 def _complete(received: bytes, frame: bytes, size: int | None, end: bytes) -> bool:
-    """Return whether the answer of a board is there, behind an echo of the request if there is one."""
+    """Return whether the answer of a board is complete, after an echo of the request if there is one."""
     answer = received.removeprefix(frame)
     return len(answer) >= size if size is not None else answer.endswith(end) and bool(answer)

@@ -35,13 +35,13 @@ _CAPABILITIES = Capabilities(
     torque_off="torque",
     limits=True,
 )
-# What servos measure: the command that reads it, bytes of data, unit.
+# What servos measure: the command that reads it, bytes of data, and what 1 means in the unit of `Telemetry`.
 _TELEMETRY = {
     "position": (codec.POSITION_READ, 2, 1.0),
     "voltage": (codec.VOLTAGE_READ, 2, 1e-3),
     "temperature": (codec.TEMPERATURE_READ, 1, 1.0),
 }
-# From a request to the answer.
+# Time from a request to the answer [s].
 _TURNAROUND = 300e-6
 
 
@@ -186,7 +186,7 @@ class Lx16aBus(WithoutServoSettings):
         return True
 
     def set_limits(self, id: int, lowest: float, highest: float) -> bool:
-        """Set the range of goals that a servo accepts; it keeps them without supply.
+        """Set the range of goals that a servo accepts, and keeps without supply.
 
         Parameters
         ----------
@@ -227,7 +227,7 @@ class Lx16aBus(WithoutServoSettings):
         """
         baud, servos = self._transport.baud, len(ids)
         goals = serial_seconds(len(self._frames(dict.fromkeys(ids, 0.0))), baud)
-        # A request of 6 bytes, and an answer with as many more as it has data.
+        # A request has 6 bytes, and an answer 6 bytes in addition to its data.
         position, voltage, temperature = (serial_seconds(12 + data, baud) + _TURNAROUND for data in (2, 2, 1))
         return BusTiming(goals, servos * position, servos * (position + voltage + temperature))
 
@@ -236,7 +236,7 @@ class Lx16aBus(WithoutServoSettings):
         self._transport.close()
 
     def _frames(self, goals: Mapping[int, float]) -> bytes:
-        # In no time: as fast as the servo can.
+        # A move time of 0: as fast as the servo can.
         waiting = (codec.frame(id, codec.MOVE_WAIT, codec.encode_words(round(goal), 0)) for id, goal in goals.items())
         return b"".join(waiting) + codec.frame(codec.BROADCAST, codec.MOVE_START)
 

@@ -16,7 +16,7 @@ _Value = TypeVar("_Value")
 def one_by_one(ids: Sequence[int], ask: Callable[[int], Answers[_Value]]) -> Answers[_Value]:
     """Return the answers of servos that are asked in turn.
 
-    Where the first is silent, and then also one from the middle, nobody answers: the others are not waited for.
+    If the first servo is silent, the middle one of the others is next; if it is silent too, no other is asked.
 
     Parameters
     ----------

@@ -6,26 +6,26 @@ from collections.abc import Collection
 
 __all__ = ["Patience"]
 
-# A servo that has answered this often is known; it is waited for this many times as long as it took at most.
+# Answers after which a servo's times count as known; the wait for it is this multiple of its slowest answer.
 _KNOWN, _FACTOR = 8, 4.0
-# By how much the bound is raised with each failure: servos that have become slower are found again.
+# Factor on the wait for each missed answer, so that servos that have become slower are found again.
 _RAISE = 1.5
-# Programs are kept from running for a few milliseconds on computers that do other things as well [s].
+# Least wait before that factor: on a busy computer, a program may be suspended for a few milliseconds [s].
 _LEAST = 0.004
-# How slowly it is forgotten how long an answer took, per answer.
+# Factor by which a servo's slowest time fades with each further answer.
 _FADING = 0.99
 
 
 class Patience:
-    """Waits as long as a servo needs, as far as that is known, and longer after each answer that is missed.
+    """Adapts the wait for a servo to the times that it has taken, and extends it after each missed answer.
 
-    The retransmission timeout of RFC 6298 is the model: a bound from measured times, raised with each failure. Without
-    it a missing servo takes as much time as a dozen that answer.
+    The retransmission timeout of RFC 6298 is the model: a bound from measured times, raised with each failure. With a
+    fixed timeout, a missing servo would take as much time as a dozen that answer.
 
     Parameters
     ----------
     longest : float
-        How long a servo is waited for of which nothing is known, and any servo at most [s].
+        Wait for a servo whose times are not known yet, and longest wait for any servo [s].
     """
 
     def __init__(self, longest: float) -> None:
@@ -35,7 +35,7 @@ class Patience:
         self._missed: dict[int, int] = {}
 
     def usual(self, ids: Collection[int]) -> float:
-        """Return how late answers may be as far as is known, whatever was missed since [s].
+        """Return how late answers may be by their known times, without the increase for missed answers [s].
 
         Parameters
         ----------
@@ -45,7 +45,7 @@ class Patience:
         return max((self._bound(id, 0) for id in ids), default=self.longest)
 
     def now(self, ids: Collection[int]) -> float:
-        """Return how long the next answers are waited for [s].
+        """Return how long to wait for the next answers [s].
 
         Parameters
         ----------
@@ -55,7 +55,7 @@ class Patience:
         return max((self._bound(id, self._missed.get(id, 0)) for id in ids), default=self.longest)
 
     def answered(self, id: int, seconds: float) -> None:
-        """Take note of how long a servo took.
+        """Record how long a servo took to answer.
 
         Parameters
         ----------
@@ -69,7 +69,7 @@ class Patience:
         self._missed[id] = 0
 
     def missed(self, id: int) -> None:
-        """Take note that a servo was waited for in vain.
+        """Record that a servo was waited for in vain.
 
         Parameters
         ----------
@@ -81,5 +81,5 @@ class Patience:
     def _bound(self, id: int, missed: int) -> float:
         if self._answers.get(id, 0) < _KNOWN:
             return self.longest
-        # After a few failures it is the longest in any case.
+        # The exponent is limited, as the longest wait applies after a few failures in any case.
         return min(self.longest, max(_LEAST, _FACTOR * self._slowest[id]) * _RAISE ** min(missed, 10))

@@ -14,9 +14,9 @@ __all__ = ["Bus"]
 class Bus(Protocol):
     """Servos on one port.
 
-    Goals and positions are pulse widths [us] or ticks, as `capabilities` says; what they mean as angles is the
-    calibration's affair. Every method raises `PortError` if the port is gone, and `InputError` for ids, goals and
-    limits that the bus does not have; nothing is sent then.
+    Goals and positions are pulse widths [us] or ticks, as `capabilities` says; the calibration relates them to angles.
+    Every method raises `PortError` if the port is gone, and `InputError` for ids, goals and limits that the bus does
+    not have; nothing is sent then.
 
     Attributes
     ----------
@@ -33,7 +33,7 @@ class Bus(Protocol):
     capabilities: Capabilities
 
     def ping(self, id: int) -> BusServo | None:
-        """Return a servo that answers, or None if it does not, or if nothing on this bus answers.
+        """Return the servo if it answers, or None if it does not, or if this kind of bus has no answers.
 
         Parameters
         ----------
@@ -115,7 +115,7 @@ class Bus(Protocol):
         ids : sequence of int
             The servos.
         speed : float or None
-            In the unit of the bus a second; None for the servo's own.
+            Speed, in the unit of the bus per second; None for the servo's own highest speed.
         """
 
     def set_torque_limit(self, ids: Sequence[int], share: float) -> bool:

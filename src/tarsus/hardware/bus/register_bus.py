@@ -200,7 +200,7 @@ class RegisterBus(RegisterSettings):
         self._transport.close()
 
     def _goal(self, id: int, goal: int) -> bytes:
-        # Without the speed in the same packet, Feetech's servos move at the speed of the last one.
+        # Feetech's servos keep the speed that was last written, so each packet with a goal sets it anew.
         values = {"goal": goal, "goal_speed": self._speed.get(id, 0)}
         return b"".join(self._table.encode(name, values.get(name, 0)) for name in self._series.goal)
 

@@ -24,11 +24,11 @@ class RegisterReader:
     link : Link
         The line.
     series : Series
-        What the servos are.
+        Series of the servos.
     fast : bool
-        Whether they answer in one packet, if they can.
+        Whether several servos answer in one shared packet, if their series can.
     turnaround : float, optional
-        Time from a request to the answer, for computed times [s]; by default as the servos are delivered.
+        Time from a request to the answer, for computed times [s]; by default with the servos' factory settings.
     """
 
     def __init__(self, link: Link, series: Series, *, fast: bool, turnaround: float | None) -> None:
@@ -52,7 +52,7 @@ class RegisterReader:
             parts = [one for frame in whole.values.values() for one in split_fast(frame, block[1])]
             if [one.id for one in parts] == list(ids):
                 return Answers({one.id: one for one in parts})
-        # If one servo is missing, the shared packet is not complete: asked for packets of their own, the others answer.
+        # If one servo is missing, the shared packet is incomplete; asked for separate packets, the other servos answer.
         if many is not None and len(ids) > 1:
             return self._link.ask(many(ids, *block), ids, block[1])
         return one_by_one(ids, lambda id: self._link.ask(self._series.dialect.read(id, *block), (id,), block[1]))

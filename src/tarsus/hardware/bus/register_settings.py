@@ -38,11 +38,11 @@ class RegisterSettings:
     _table: RegisterTable
     _link: Link
     _reader: RegisterReader
-    # Speeds that go with each goal, by id.
+    # Values of the speed register that are sent with each goal, by id.
     _speed: dict[int, int]
 
     def set_limits(self, id: int, lowest: float, highest: float) -> bool:
-        """Set the range of goals that a servo accepts; it keeps them without supply. Its torque must be off.
+        """Set the range of goals that a servo accepts, and keeps without supply; its torque must be off.
 
         Parameters
         ----------
@@ -65,7 +65,7 @@ class RegisterSettings:
         steps = [*([("lock", _UNLOCKED)] * lockable), *limits.items(), *([("lock", _LOCKED)] * lockable)]
         refused: tuple[str, ...] = ()
         for name, value in steps:
-            # Whether servos answer to this depends on their status level: what counts is what can be read back.
+            # Whether servos answer to a write depends on their status level, so the registers are read back afterwards.
             frame = self._dialect.write(id, self._table[name].address, self._table.encode(name, value))
             for answer in self._link.ask(frame, (id,), 0).values.values():
                 refused += self._dialect.errors_in(answer.code)
@@ -81,10 +81,10 @@ class RegisterSettings:
         ids : sequence of int
             The servos.
         speed : float or None
-            Speed [tick/s]; None for the servo's own.
+            Speed [tick/s]; None for the servo's own highest speed.
         """
         limit = checked_speed(self.name, self.capabilities, speed)
-        # 0 means the highest speed; what a servo can't tell apart from it is not sent.
+        # 0 would mean the highest speed, so a limit that rounds to 0 is sent as 1.
         value = 0 if limit is None else min(max(round(limit / self._unit("goal_speed")), 1), self._series.fastest)
         values = dict.fromkeys(checked_ids(self.name, self.capabilities, ids), value)
         if "goal_speed" in self._series.goal:
@@ -114,7 +114,7 @@ class RegisterSettings:
     def set_watchdog(self, ids: Sequence[int], seconds: float | None) -> bool:
         """Make Dynamixel X servos stop by themselves if no packet comes for some time; others can't.
 
-        A servo that has stopped takes goals again after this.
+        A servo that its watchdog has stopped takes goals again after this call.
 
         Parameters
         ----------
@@ -133,7 +133,7 @@ class RegisterSettings:
         return True
 
     def _unit(self, register: str) -> float:
-        """Return what 1 in a register means, in ticks where it is a speed."""
+        """Return what 1 in a register means, in its unit; speeds in rpm are converted to [tick/s]."""
         one = self._table[register]
         return one.scale * ((self.capabilities.per_turn or 0.0) / 60.0 if one.unit == "rpm" else 1.0)
 
@@ -144,7 +144,7 @@ class RegisterSettings:
             self._link.send(self._dialect.sync_write(self._table[register].address, content))
 
     def _confirm(self, id: int, register: str, wanted: int, refused: tuple[str, ...]) -> None:
-        """Read a register back, and refuse if it does not hold what was written."""
+        """Read a register back; raise `ServoStatusError` if it does not hold what was written."""
         block = self._table.block(register, register)
         read = self._table.decode(register, self._reader.read((id,), block).require()[id].data, block[0])
         if read != wanted:

@@ -101,7 +101,7 @@ def bus_over(name: str, transport: Any, **options: Any) -> Bus:
     transport : Transport or I2cTransport
         The line, of the kind that the bus needs.
     **options
-        The bus's own.
+        Options of this kind of bus.
 
     Raises
     ------
@@ -123,7 +123,7 @@ def open_bus(name: str, port: str, *, baud: int | None = None, **options: Any) -
     baud : int, optional
         Bits per second, or clock of I2C [Hz]; by default the maker's.
     **options
-        The bus's own, such as ``timeout`` [s].
+        Options of this kind of bus, such as ``timeout`` [s].
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""Telemetry of which each value takes a request of its own."""
+"""Telemetry that takes a separate request for each value."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ __all__ = ["SeparateTelemetry"]
 
 @runtime_checkable
 class SeparateTelemetry(Protocol):
-    """A bus that reads single values of telemetry in less time than all of them."""
+    """A bus that reads a single value of telemetry in less time than all of them."""
 
     def read_one(self, value: str, ids: Sequence[int]) -> Answers[Telemetry]:
         """Return one value of what servos measure; the others are None.

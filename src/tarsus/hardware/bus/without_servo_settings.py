@@ -1,4 +1,4 @@
-"""What buses have in common whose servos have neither speed limit, torque limit nor watchdog."""
+"""What is common to buses whose servos have neither speed limit, torque limit nor watchdog."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ __all__ = ["WithoutServoSettings"]
 
 
 class WithoutServoSettings:
-    """The settings that a bus lacks: arguments are checked, nothing is sent, and the answer is False.
+    """The settings that a bus lacks: arguments are checked, nothing is sent, and False is returned.
 
     Attributes
     ----------
@@ -32,7 +32,7 @@ class WithoutServoSettings:
         ids : sequence of int
             The servos.
         speed : float or None
-            Speed, in units of the goals a second.
+            Speed, in the unit of the bus per second.
         """
         checked_speed(self.name, self.capabilities, speed)
         checked_ids(self.name, self.capabilities, ids)

@@ -1,4 +1,4 @@
-"""What buses of boards that only send pulses have in common: nothing is measured, and there are no ids to find."""
+"""What is common to buses of boards that only send pulses: shafts are not measured, and there are no ids to find."""
 
 from __future__ import annotations
 
@@ -16,18 +16,18 @@ from tarsus.representation import represented
 __all__ = ["LONGEST_PULSE", "SHORTEST_PULSE", "BoardBus", "runs"]
 
 SHORTEST_PULSE, LONGEST_PULSE = 400.0, 2600.0
-"""Range of pulse widths that boards send [us]; what a servo bears is narrower, and the calibration's affair."""
+"""Range of pulse widths that boards send [us]; the calibration has the narrower range of each servo."""
 
 
 def runs(channels: Iterable[int], most: int) -> list[list[int]]:
-    """Return channels as runs of consecutive ones.
+    """Return channels in runs of consecutive numbers.
 
     Parameters
     ----------
     channels : iterable of int
         The channels.
     most : int
-        Longest run.
+        Most channels in a run.
     """
     found: list[list[int]] = []
     for channel in sorted(channels):
@@ -57,7 +57,7 @@ class BoardBus(WithoutServoSettings):
         self._close = transport.close
 
     def ping(self, id: int) -> BusServo | None:
-        """Return the channel of a board that answers, or None; whether there is a servo, no board can tell.
+        """Return the channel if its board answers, or None; no board can tell whether a servo is connected.
 
         Parameters
         ----------
@@ -137,7 +137,7 @@ class BoardBus(WithoutServoSettings):
         return True
 
     def set_limits(self, id: int, lowest: float, highest: float) -> bool:
-        """Do nothing: limits of pulses are set with the board's own software, if it has some.
+        """Do nothing: limits of pulses are set with the board's own software, if it has any.
 
         Parameters
         ----------
@@ -182,7 +182,7 @@ class BoardBus(WithoutServoSettings):
         return Telemetry()
 
     def _send(self, goals: Mapping[int, float]) -> None:
-        """Send pulse widths that were checked."""
+        """Send checked pulse widths [us]."""
 
     def _switch(self, ids: Sequence[int] | None, on: bool) -> None:
         """End pulses, or let them begin with the next goal."""

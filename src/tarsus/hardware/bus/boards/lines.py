@@ -61,7 +61,7 @@ class LineBus(BoardBus):
         self._pulses = dict.fromkeys(range(channels), 0)
 
     def set_watchdog(self, ids: Sequence[int], seconds: float | None) -> bool:
-        """Make the board end all pulses if no line comes for some time; after its start, that is half a second.
+        """Make the board end all pulses if no line comes for some time, half a second when it has just started.
 
         Parameters
         ----------
@@ -117,7 +117,7 @@ class LineBus(BoardBus):
         return serial_seconds(size, self._transport.baud)
 
     def _goal_seconds(self, ids: Sequence[int]) -> float:
-        # A line has all channels.
+        # Each line sets all channels.
         del ids
         return serial_seconds(len(codec.pulses([1500] * len(self._pulses))), self._transport.baud)
 

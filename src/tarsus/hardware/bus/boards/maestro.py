@@ -33,10 +33,10 @@ _ERROR_BITS = 9
 class MaestroBus(BoardBus):
     """A Mini Maestro with 12, 18 or 24 channels.
 
-    Channels are inputs whose mode was set to *Input* in the Maestro Control Center.
+    Channels whose mode is set to *Input* in the Maestro Control Center are inputs.
 
-    Its own watchdog is the serial timeout, and what channels do "on startup or error"; both are set in Pololu's Maestro
-    Control Center.
+    Its own watchdog is the serial timeout, after which channels do what is set for them "on startup or error"; both are
+    set in Pololu's Maestro Control Center.
 
     Parameters
     ----------
@@ -45,7 +45,7 @@ class MaestroBus(BoardBus):
     device : int, optional
         Number of the board, for several boards on a line.
     checked : bool
-        Whether commands have a CRC, as it is set in the Maestro Control Center.
+        Whether commands have a CRC; it must match the setting in the Maestro Control Center.
     timeout : float
         Longest time until an answer begins, beyond its time on the wire [s].
     """
@@ -68,10 +68,10 @@ class MaestroBus(BoardBus):
         ids : sequence of int
             The channels.
         speed : float or None
-            Speed [us/s]; None for none.
+            Speed [us/s]; None for no limit.
         """
         limit = checked_speed(self.name, self.capabilities, speed)
-        # In units of 0.25 us in 10 ms.
+        # In units of 0.25 us per 10 ms, which is 25 us/s.
         value = 0 if limit is None else min(max(round(limit / 25.0), 1), 0x3FFF)
         for channel in checked_ids(self.name, self.capabilities, ids):
             self._link.send(codec.set_speed(channel, value, device=self._device, checked=self._checked))

@@ -13,7 +13,7 @@ from tarsus.hardware.transport.wire import i2c_seconds
 
 __all__ = ["Pca9685Bus"]
 
-# After the oscillator was told to run; data sheet, 7.3.1.1.
+# Time that the oscillator takes to start after its sleep [s]; data sheet, 7.3.1.1.
 _WAKING = 500e-6
 _ADDRESSES = range(0x40, 0x80)
 
@@ -28,14 +28,14 @@ class Pca9685Bus(BoardBus):
     addresses : sequence of int
         Addresses of the boards.
     rate : float
-        Pulses per second [Hz]; analogue servos bear 50.
+        Pulses per second [Hz]; analogue servos tolerate 50.
     oscillator : float
         Frequency of the boards' oscillators, if it was measured [Hz].
 
     Raises
     ------
     InputError
-        If there is no address, or one twice, or one that no board can have, or the rate is impossible.
+        If no address is given, one is repeated, one is impossible for a board, or the rate is impossible.
     """
 
     def __init__(
@@ -99,7 +99,7 @@ class Pca9685Bus(BoardBus):
         return "PCA9685"
 
     def _prepare(self, address: int, *, always: bool = False) -> None:
-        """Set rate and mode of a board that was not used yet; pulses that it sends end."""
+        """Set rate and mode of a board at its first use, ending its pulses; `always` checks later that it answers."""
         if address in self._ready:
             if always:
                 self._transport.read(address, 0, 1)

@@ -88,7 +88,7 @@ class Servo2040Bus(BoardBus):
         )
 
     def _goal_seconds(self, ids: Sequence[int]) -> float:
-        # Over USB it takes less than at the rate of the port, which means nothing there.
+        # An upper bound: the baud rate of the port has no effect over USB, which is faster.
         return serial_seconds(len(self._frames(dict.fromkeys(ids, 0.0))), self._transport.baud)
 
     def _telemetry_seconds(self) -> float:
@@ -120,7 +120,7 @@ class Servo2040Bus(BoardBus):
             codec.get(first, count), (first,), 2 * count, belongs=lambda frame: frame.code == count
         )
         for error in answers.errors:
-            # The pin is none of the servos.
+            # The link names the first pin as the servo's id; the error raised here names none.
             remedy = "Check that this is the board's port, and that the firmware for Chica is on it."
             raise type(error)(self.name, self.port, expected=error.expected, received=error.received, remedy=remedy)
         return codec.values_in(answers.values[first])

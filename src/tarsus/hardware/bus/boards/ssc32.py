@@ -16,7 +16,7 @@ from tarsus.hardware.transport.wire import serial_seconds
 
 __all__ = ["Ssc32Bus"]
 
-# The board turns widths outside into these.
+# The board itself limits pulse widths to this range.
 _CAPABILITIES = Capabilities(
     unit="us",
     lowest=500,
@@ -48,14 +48,14 @@ class Ssc32Bus(BoardBus):
         self._speeds: dict[int, int] = {}
 
     def set_speed_limit(self, ids: Sequence[int], speed: float | None) -> bool:
-        """Set the highest speed at which pulses change; the board has it from the next goal on.
+        """Set the highest speed at which pulses change; it is sent with each goal from the next one on.
 
         Parameters
         ----------
         ids : sequence of int
             The channels.
         speed : float or None
-            Speed [us/s]; None for none.
+            Speed [us/s]; None for no limit.
         """
         limit = checked_speed(self.name, self.capabilities, speed)
         for channel in checked_ids(self.name, self.capabilities, ids):
