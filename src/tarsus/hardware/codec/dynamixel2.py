@@ -104,7 +104,7 @@ def errors_in(code: int) -> tuple[str, ...]:
 
 
 def _framed(id: int, body: bytes) -> bytes:
-    """Return a packet with an instruction and parameters, that contain no header afterwards."""
+    """Return a packet with an instruction and parameters, stuffed so that they contain no header."""
     stuffed = body.replace(b"\xff\xff\xfd", b"\xff\xff\xfd\xfd")
     frame = HEADER + bytes((id,)) + (len(stuffed) + 2).to_bytes(2, "little") + stuffed
     return frame + crc(frame).to_bytes(2, "little")
@@ -143,12 +143,12 @@ def status(id: int, error: int, data: bytes = b"") -> bytes:
 def scan(received: bytes, *, ended: bool = False) -> Scanned:
     """Return the packets in a stream of bytes.
 
-    The code of a frame is the error of an answer, or else the instruction.
+    The code of a frame is the error byte of an answer, or the instruction of any other packet.
 
     Parameters
     ----------
     received : bytes
-        What has arrived and was not part of a packet before.
+        Bytes to search: what the last scan left over, and what has arrived since.
     ended : bool
         Whether nothing more comes, so that an incomplete packet is a damaged one.
     """

@@ -1,6 +1,6 @@
 """Feetech STS and SCS: the packets of Dynamixel 1.0, with reading and writing of many servos in one packet.
 
-Two bytes of a register are little-endian in STS servos and big-endian in SCS servos. Source: Feetech, SMS/STS and SCS
+Registers of two bytes are little-endian in STS servos and big-endian in SCS servos. Source: Feetech, SMS/STS and SCS
 communication protocol manuals.
 """
 

@@ -30,7 +30,7 @@ def checked(text: str) -> bytes:
 
 
 ASK = checked("?")
-"""The line that asks who is there."""
+"""The line that asks the board to identify itself."""
 
 
 MOST_INPUTS: Final = 8
@@ -64,7 +64,7 @@ def pulses(widths: Sequence[int]) -> bytes:
 
 
 def watchdog(milliseconds: int) -> bytes:
-    """Return the line that sets after which silence the pulses end.
+    """Return the line that sets the time without a line after which the pulses end.
 
     Parameters
     ----------

@@ -88,7 +88,7 @@ def decode_unsigned(data: bytes) -> int:
 
 
 def decode_signed(data: bytes) -> int:
-    """Return the number in some bytes that may be negative: positions can be below 0.
+    """Return the signed number in some bytes: positions can be below 0.
 
     Parameters
     ----------
@@ -104,7 +104,7 @@ def scan(received: bytes, *, ended: bool = False) -> Scanned:
     Parameters
     ----------
     received : bytes
-        What has arrived and was not part of a frame before.
+        Bytes to search: what the last scan left over, and what has arrived since.
     ended : bool
         Whether nothing more comes, so that an incomplete frame is a damaged one.
     """

@@ -46,7 +46,8 @@ GO_HOME: Final = 0xA2
 
 MOST_CHANNELS: Final = 24
 FULL_LEVEL: Final = 1023
-"""What an input answers at its highest voltage; digital ones, from channel 12 on, know only 0 and this."""
+"""Level that an input reports at its highest voltage; digital inputs, from channel 12 on, report only 0 or this."""
+# First byte of a command of the Pololu protocol; greatest number of 14 bits.
 _POLOLU = 0xAA
 _MOST_WORD = 0x3FFF
 
@@ -65,12 +66,12 @@ ERRORS = {
 
 
 def errors_in(code: int) -> tuple[str, ...]:
-    """Return what the board reports.
+    """Return the errors that the board reports.
 
     Parameters
     ----------
     code : int
-        Its errors.
+        The board's error bits.
     """
     return tuple(text for bit, text in ERRORS.items() if code >> bit & 1)
 
@@ -167,7 +168,7 @@ def set_speed(channel: int, speed: int, *, device: int | None = None, checked: b
     channel : int
         The channel.
     speed : int
-        In units of 0.25 us / 10 ms; 0 for no limit.
+        Speed in units of 0.25 us per 10 ms; 0 for no limit.
     device : int, optional
         Number of the board.
     checked : bool
@@ -192,7 +193,7 @@ def get_position(channel: int, *, device: int | None = None, checked: bool = Fal
 
 
 def levels_in(answer: bytes) -> tuple[int, ...]:
-    """Return the numbers that channels answer to `get_position`: 0 to 1023 of those that are inputs.
+    """Return the numbers that channels answer to `get_position`; those of inputs are 0 to 1023.
 
     Parameters
     ----------

@@ -33,7 +33,7 @@ PING: Final = 0x01
 READ: Final = 0x02
 WRITE: Final = 0x03
 SYNC_WRITE: Final = 0x83
-# A packet with instruction and checksum alone has a length of 2.
+# Greatest length that counts as one; the least is 2, of a packet with only its instruction and checksum.
 _MOST_LENGTH = 250
 
 
@@ -139,7 +139,7 @@ def scan(received: bytes, *, ended: bool = False) -> Scanned:
     Parameters
     ----------
     received : bytes
-        What has arrived and was not part of a packet before.
+        Bytes to search: what the last scan left over, and what has arrived since.
     ended : bool
         Whether nothing more comes, so that an incomplete packet is a damaged one.
     """
@@ -147,7 +147,7 @@ def scan(received: bytes, *, ended: bool = False) -> Scanned:
 
 
 def _size(begin: bytes) -> int:
-    # A third FF belongs to no id: the header begins one byte later.
+    # No servo has the id FF: after a third FF, the header begins one byte later.
     return 4 + begin[3] if begin[2] != 0xFF and 2 <= begin[3] <= _MOST_LENGTH else 0
 
 

@@ -58,7 +58,7 @@ def prescale(rate: float, oscillator: float = OSCILLATOR) -> int:
 
 
 def frequency(value: int, oscillator: float = OSCILLATOR) -> float:
-    """Return how many pulses a second a prescale makes [Hz].
+    """Return the pulse rate that a prescale makes [Hz].
 
     Parameters
     ----------
@@ -71,7 +71,7 @@ def frequency(value: int, oscillator: float = OSCILLATOR) -> float:
 
 
 def counts(microseconds: float, rate: float) -> int:
-    """Return a pulse width in steps of the chip.
+    """Return a pulse width in steps of the chip, 4096 to a period.
 
     Parameters
     ----------
@@ -89,7 +89,7 @@ def pulse_width(steps: int, rate: float) -> float:
     Parameters
     ----------
     steps : int
-        In steps of the chip.
+        Pulse width in steps of the chip.
     rate : float
         Pulses per second [Hz].
     """
@@ -97,7 +97,7 @@ def pulse_width(steps: int, rate: float) -> float:
 
 
 def _pulse(steps: int) -> bytes:
-    # On at 0; off after so many steps, or for good.
+    # The output goes on at step 0, and off after this many steps; for 0 steps it stays off.
     return b"\x00\x00" + (steps or _FULL_OFF).to_bytes(2, "little")
 
 
@@ -133,7 +133,7 @@ def end_all() -> bytes:
 
 
 def mode(*, sleep: bool) -> tuple[bytes, bytes]:
-    """Return the transfers that set the chip's mode: addresses count up, outputs drive both ways.
+    """Return the transfers that set the chip's mode, with auto-increment of addresses and totem-pole outputs.
 
     Parameters
     ----------
@@ -146,7 +146,7 @@ def mode(*, sleep: bool) -> tuple[bytes, bytes]:
 
 
 def set_prescale(value: int) -> bytes:
-    """Return the transfer that sets the prescale, while the oscillator sleeps.
+    """Return the transfer that sets the prescale, which the chip accepts only while the oscillator sleeps.
 
     Parameters
     ----------

@@ -80,7 +80,7 @@ class Register:
             If the register can't hold it.
         """
         bits = int(self.sign) if self.sign.isdigit() else 8 * self.size - (self.sign == "two")
-        # A sign bit alone would be read as 0.
+        # With a sign bit, -(1 << bits) would set that bit alone, which reads as 0.
         least = -(1 << bits) + (self.sign != "two") if self.sign else 0
         if not least <= value < 1 << bits:
             raise InputError(f"register {self.name} can't hold {value}: it has {bits} bits for the magnitude")
@@ -91,7 +91,7 @@ class Register:
 
 
 class RegisterTable:
-    """The registers of a kind of servo, with the order of bytes that it uses.
+    """The registers of a kind of servo, and its byte order.
 
     Parameters
     ----------

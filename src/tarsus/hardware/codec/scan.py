@@ -39,12 +39,12 @@ class Scanned:
     Attributes
     ----------
     parts : tuple of Frame or bytes
-        In their order, whole frames and what is no frame: noise, and frames with a wrong checksum.
+        In order of arrival: whole frames, and as bytes what is no frame, noise and frames with a wrong checksum.
     rest : bytes
         The beginning of a frame that is not complete yet.
     suspect : tuple of Frame
-        Frames that bytes follow which belong to no frame. Where a byte was inserted into a frame or lost from it, what
-        is left may have the right checksum by chance, but then something is left over behind it.
+        Frames followed by bytes that belong to no frame and do not begin with a header. What is left of a frame that
+        gained or lost a byte may have the right checksum by chance, but then such bytes are left over behind it.
     """
 
     parts: tuple[Frame | bytes, ...]
@@ -58,7 +58,7 @@ class Scanned:
 
     @property
     def damaged(self) -> tuple[bytes, ...]:
-        """What is no frame."""
+        """Bytes that are no frame: noise, and frames with a wrong checksum."""
         return tuple(part for part in self.parts if isinstance(part, bytes))
 
 
@@ -71,7 +71,7 @@ class Scanner(Protocol):
         Parameters
         ----------
         received : bytes
-            What has arrived and was not part of a frame before.
+            Bytes to search: what the last scan left over, and what has arrived since.
         ended : bool
             Whether nothing more comes, so that an incomplete frame is a damaged one.
         """
@@ -79,18 +79,18 @@ class Scanner(Protocol):
 
 @dataclass(frozen=True, slots=True)
 class Framing:
-    """How the frames of a protocol look.
+    """The layout of a protocol's frames.
 
     Attributes
     ----------
     header : bytes
-        With which each frame begins.
+        Bytes with which each frame begins.
     known : int
-        How many bytes must be there until the length of a frame is known.
+        How many bytes of a frame must have arrived for its size to be known.
     size : callable
-        Size of the frame that begins with these bytes, or 0 if none begins with them.
+        Returns the size of the frame that begins with some bytes, or 0 if no frame begins with them.
     decode : callable
-        The frame in whole bytes, or None if they are damaged.
+        Returns the frame that some bytes hold, or None if they are damaged.
     """
 
     header: bytes
@@ -105,9 +105,9 @@ def scan_frames(received: bytes, framing: Framing, *, ended: bool) -> Scanned:
     Parameters
     ----------
     received : bytes
-        What has arrived and was not part of a frame before.
+        Bytes to search: what the last scan left over, and what has arrived since.
     framing : Framing
-        How frames look.
+        Layout of the frames.
     ended : bool
         Whether nothing more comes, so that an incomplete frame is a damaged one.
     """
@@ -123,7 +123,7 @@ def scan_frames(received: bytes, framing: Framing, *, ended: bool) -> Scanned:
             parts.append(frame)
             at = noise = end
         else:
-            # Where another frame follows, the length is right: bytes inside a damaged frame are no frames.
+            # Where a header or the end follows, the length is right: bytes inside the damaged frame are no frames.
             follows = at < end and received[end:].startswith(framing.header)
             at = end if follows or end == len(received) > at else at + 1
     parts += [received[noise:at]] if at > noise else []
@@ -131,7 +131,7 @@ def scan_frames(received: bytes, framing: Framing, *, ended: bool) -> Scanned:
 
 
 def _suspect(parts: Sequence[Frame | bytes], header: bytes) -> tuple[Frame, ...]:
-    """Return frames behind which something is left over that is not a damaged frame with its header."""
+    """Return the frames followed by bytes that do not begin with the header; a damaged frame would."""
     return tuple(
         one
         for one, after in itertools.pairwise(parts)
@@ -140,7 +140,7 @@ def _suspect(parts: Sequence[Frame | bytes], header: bytes) -> tuple[Frame, ...]
 
 
 def _size(begin: bytes, framing: Framing) -> int:
-    """Return the size of a frame that begins with these bytes, at least that; 0 if none can."""
+    """Return the size of the frame that begins with these bytes, its least size if that is unknown; 0 if none can."""
     if not framing.header.startswith(begin[: len(framing.header)]):
         return 0
     return framing.size(begin) if len(begin) == framing.known else framing.known

@@ -38,6 +38,7 @@ VOLTAGE: Final = 25
 RELAY: Final = 26
 """Pin that switches all pulses on or off, and a relay."""
 
+# Number of pins; current of a step [A], and value at no current; steps per volt.
 _PINS = 29
 _CURRENT_STEP, _CURRENT_ZERO = 0.0814, 512
 _VOLTAGE_STEPS = 310.3
@@ -91,7 +92,7 @@ def voltage(value: int) -> float:
     Parameters
     ----------
     value : int
-        As it is answered.
+        Value in the answer.
     """
     return value / _VOLTAGE_STEPS
 
@@ -102,18 +103,18 @@ def current(value: int) -> float:
     Parameters
     ----------
     value : int
-        As it is answered.
+        Value in the answer.
     """
     return (value - _CURRENT_ZERO) * _CURRENT_STEP
 
 
 def scan(received: bytes, *, ended: bool = False) -> Scanned:
-    """Return the answers in a stream of bytes; their id is the first pin, their code how many follow.
+    """Return the answers in a stream of bytes; their id is the first pin, their code how many values follow.
 
     Parameters
     ----------
     received : bytes
-        What has arrived and was not part of an answer before.
+        Bytes to search: what the last scan left over, and what has arrived since.
     ended : bool
         Whether nothing more comes, so that an incomplete answer is a damaged one.
     """

@@ -36,7 +36,7 @@ def move(pulses: Mapping[int, int], *, speeds: Mapping[int, int] | None = None) 
 
 
 def query_pulses(*channels: int) -> bytes:
-    """Return the query for the pulse widths that channels send; a byte for each of them answers.
+    """Return the query for the pulse widths that channels send; the answer has one byte for each.
 
     Parameters
     ----------
@@ -47,7 +47,7 @@ def query_pulses(*channels: int) -> bytes:
 
 
 def query_inputs(*inputs: int) -> bytes:
-    """Return the query for the levels of digital inputs; a character for each of them answers.
+    """Return the query for the levels of digital inputs; the answer has one character for each.
 
     Parameters
     ----------
@@ -58,7 +58,7 @@ def query_inputs(*inputs: int) -> bytes:
 
 
 def read_inputs(answer: bytes) -> tuple[int, ...] | None:
-    """Return levels, 0 or 1; None if that is no answer to `query_inputs`.
+    """Return levels, 0 or 1; None if the bytes are no answer to `query_inputs`.
 
     Parameters
     ----------
