@@ -1,4 +1,4 @@
-"""What a transport offers to a bus, and what the far end of an emulated one is."""
+"""What a transport offers to a bus, and what an emulated transport has at its far end."""
 
 from __future__ import annotations
 

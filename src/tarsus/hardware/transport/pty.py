@@ -23,8 +23,9 @@ from tarsus.representation import represented
 
 __all__ = ["PtyServer"]
 
+# Longest pause between two turns of the device [s].
 _IDLE = 0.05
-# A device that takes longer for its turn is not waited for [s].
+# Longest wait for a turn of the device [s].
 _LONGEST_TURN = 10.0
 
 
@@ -100,7 +101,7 @@ class PtyServer:
             os.close(file)
 
     def expect(self, now: float, count: int) -> None:
-        """Take note that bytes are being sent: the device receives them at that time, however late they are read.
+        """Record that bytes are being sent: for the device they are sent at that time, however late they are read.
 
         Parameters
         ----------
@@ -142,11 +143,11 @@ class PtyServer:
             if self._wake_reader in ready:
                 os.read(self._wake_reader, 64)
             if asked > self._answered:
-                # What was sent before the turn was asked for may have come since.
+                # Bytes sent before the turn was asked for may have arrived since.
                 ready, _, _ = select.select([self._master], [], [], 0.0)
             if self._master in ready:
                 data = os.read(self._master, 65536)
-                # The bytes are here at once; on a wire they would have taken until then.
+                # The bytes are here at once; on a wire the last of them would arrive at this time.
                 line_free = max(self._sent_at(len(data)), line_free) + serial_seconds(len(data), self._device.baud)
                 with self.lock:
                     deliveries = self._device.receive(data, line_free)
@@ -162,7 +163,7 @@ class PtyServer:
                 self._had_turn(asked)
 
     def _sent_at(self, count: int) -> float:
-        """Return when the first of some bytes was sent: now, where nobody said so."""
+        """Return when the first of some bytes was sent [s]: now, unless `expect` was told."""
         first = self._expected[0][0] if self._expected else time.perf_counter()
         while count > 0 and self._expected:
             at, size = self._expected.popleft()
@@ -177,5 +178,5 @@ class PtyServer:
             self._served.notify_all()
 
     def _arrival(self, at: float) -> float:
-        """Return when the frame of USB ends in which bytes are passed on [s]."""
+        """Return the end of the USB frame in which bytes are passed on [s]."""
         return math.ceil(at / self._frame) * self._frame if self._frame else at

@@ -117,7 +117,7 @@ _POSIX = os.name == "posix"
 
 
 def _open_remedy(port: str) -> str:
-    """Return what would work for a port that does not open."""
+    """Return advice for a port that does not open."""
     try:
         found = list_ports()
     except BusError:

@@ -7,14 +7,15 @@ from tarsus.hardware.transport.serial import SerialTransport
 
 __all__ = ["ServedTransport"]
 
+# Longest time that the system takes to pass written bytes on [s].
 _LONGEST_DELAY = 1.0
 
 
 class ServedTransport(SerialTransport):
-    """The port of a `PtyServer`, with which a wait ends only once the emulated servos had their turn.
+    """The port of a `PtyServer`, on which a wait ends only after the emulated servos have had their turn.
 
-    Real servos answer while the computer is busy; emulated ones need it themselves. Their time goes on as if they had
-    received each request when it was sent, and an answer counts as missing only where they did not send it then.
+    Real servos answer while the computer is busy; emulated ones run on it. They receive each request at the time when
+    it was sent, and an answer counts as missing only if they have not sent it after a turn.
 
     Parameters
     ----------
@@ -55,7 +56,7 @@ class ServedTransport(SerialTransport):
         data = super().read(timeout)
         if not data:
             self._server.catch_up()
-            # The system passes on what was written with a delay of its own.
+            # The system passes written bytes on with some delay.
             data = super().read(_LONGEST_DELAY if self._taken < self._server.written else 0.0)
         self._taken += len(data)
         return data
