@@ -13,6 +13,7 @@ from tarsus.hardware.emulation.servo import ServoTraits
 
 __all__ = ["EmulatedLines", "EmulatedMaestro", "EmulatedServo2040", "EmulatedSsc32"]
 
+# Size of each Maestro command [bytes].
 _SIZES = {
     maestro.SET_TARGET: 4,
     maestro.SET_SPEED: 4,
@@ -26,7 +27,7 @@ _SIZES = {
 _ANALOGUE = 12
 _TIMEOUT_ERROR = 1 << 5
 _PROTOCOL_ERROR = 1 << 4
-# Of the sketch.
+# Number of inputs of the sketch for lines of pulse widths.
 _INPUTS = 6
 
 
@@ -84,7 +85,7 @@ class EmulatedMaestro(EmulatedBoard):
         elif code == maestro.SET_TARGETS:
             self._set(data[1], data[2:])
         elif code == maestro.SET_SPEED and data[0] in self.servos:
-            # In units of 0.25 us in 10 ms.
+            # In units of 0.25 us per 10 ms, which is 25 us/s.
             self.servos[data[0]].speed_limit = (data[1] | data[2] << 7) * 25.0 or math.inf
         elif code == maestro.GET_POSITION:
             return self._position(data[0]).to_bytes(2, "little")

@@ -9,7 +9,7 @@ from tarsus.representation import represented
 
 __all__ = ["Faults"]
 
-# Bytes by which a frame is known to begin, at most.
+# Greatest length of a frame's header [bytes].
 _HEADER = 4
 
 
@@ -48,7 +48,7 @@ class Faults:
         self._random = random.Random(self.seed)
 
     def delivered(self, id: int, answer: bytes) -> bytes:
-        """Return what arrives of an answer.
+        """Return an answer as it arrives, perhaps damaged.
 
         Parameters
         ----------
@@ -66,6 +66,6 @@ class Faults:
         elif kind == 1:
             del damaged[at]
         else:
-            # Before or within its header, one more byte leaves a frame whole.
+            # Inserted before or within the header, a byte can leave the frame whole, so it goes behind the header.
             damaged.insert(max(at, min(_HEADER, len(answer) - 1)), self._random.randrange(256))
         return bytes(damaged)

@@ -30,7 +30,7 @@ class EmulatedLine(EmulatedServos):
         ``supply`` and ``faults``, passed on to `EmulatedServos`.
     """
 
-    # Whether the computer's port feeds what answers, so that it goes on when the servos' supply fails.
+    # Whether the computer's port powers what answers, so that it goes on answering when the servos' supply fails.
     _fed_by_port = False
 
     def __init__(
@@ -79,7 +79,7 @@ class EmulatedLine(EmulatedServos):
         """Return what two servos with one id make of an answer: a wire that either of them pulls low is low."""
         if id not in self.faults.duplicate or not answer:
             return answer
-        # The second one holds another position, so that its bytes and the sum of them differ.
+        # The second servo holds another position, so that its data and its checksum differ.
         other = bytes(byte ^ 0x15 if at > 4 else byte for at, byte in enumerate(answer))
         both = bytes(one & two for one, two in zip(answer, other, strict=True))
         return both if both != answer else answer[:-1] + bytes((answer[-1] ^ 0x01,))

@@ -15,8 +15,9 @@ __all__ = ["EmulatedLx16a"]
 _TRAITS = ServoTraits(per_turn=1500, lowest=0, highest=1000, speed=1560, play=2, stall_current=1.5)
 
 
-# Settings that are kept and told, and do nothing here: by the command that reads them, the one that writes them and
-# what they are at first. Offset, limits of voltage and temperature, mode and speed, LED, and what makes it blink.
+# Settings that are kept and read back, but have no effect here. The command that reads each is the key; the values are
+# the command that writes it, and its content at first. In order: offset, limits of voltage, limit of temperature, mode
+# and speed, LED, and alarms that make the LED blink.
 _SETTINGS = {
     19: (17, b"\x00"),
     23: (22, codec.encode_words(4500, 12000)),
@@ -103,7 +104,7 @@ class EmulatedLx16a(EmulatedLine):
             self._waiting[id] = order
             return
         servo, (low, high) = self.servos[id], self._limits[id]
-        # A servo that is told to move drives its motor, whether it was limp or not.
+        # A move command switches the torque on, unless the servo is overheated.
         servo.torque = not servo.overheated
         servo.goal = float(min(max(order[0], low), high))
         way, milliseconds = abs(servo.goal - servo.position), order[1]

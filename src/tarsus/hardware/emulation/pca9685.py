@@ -15,7 +15,7 @@ __all__ = ["EmulatedPca9685"]
 
 _SIZE = 256
 _PER_CHANNEL = 4
-# Contents after power-up; data sheet, tables 5, 6, 7 and section 7.3.5.
+# Registers after power-up: both modes, prescale, last byte of each channel; data sheet, tables 5, 6, 7, section 7.3.5.
 _MODE1, _MODE2, _PRESCALE = 0x11, 0x04, 0x1E
 _FULL_OFF_HIGH = 0x10
 

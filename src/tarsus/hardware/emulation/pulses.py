@@ -1,4 +1,4 @@
-"""Emulated servos that follow pulses: boards send them, and nobody tells where the shafts are."""
+"""Emulated servos that follow the pulses of boards; where their shafts are is not measured."""
 
 from __future__ import annotations
 
@@ -59,14 +59,15 @@ class EmulatedBoard(EmulatedLine):
     pulses : dict of int to float
         Pulse widths by channel [us]; 0 for none.
     levels : mapping of int to float
-        Levels of the inputs by their numbers, 0 to 1; 0 for those that it does not have.
+        Levels of the inputs by their numbers, 0 to 1; for inputs left out, 1 on boards with pull-ups and 0 on a
+        Servo2040, while on a Maestro they are outputs.
     """
 
     _fed_by_port = True
     levels: Mapping[int, float] = MappingProxyType({})
 
     def _follow(self) -> None:
-        # Also after their supply was gone: the pulses are still there.
+        # Servos follow again after a failure of their supply, as the pulses go on.
         for channel, width in self.pulses.items():
             follow(self, channel, width)
 

@@ -21,7 +21,7 @@ __all__ = ["EmulatedRegisters"]
 _PING, _READ, _WRITE = 1, 2, 3
 _SYNC_READ, _SYNC_WRITE, _FAST_SYNC_READ, _BULK_READ = 0x82, 0x83, 0x8A, 0x92
 _BROADCAST = packets.BROADCAST
-# What each kind of servo knows beside ping, read, write and sync write.
+# Instructions that each kind of servo knows in addition to ping, read, write and sync write.
 _INSTRUCTIONS = {
     "feetech-sts": {_SYNC_READ},
     "feetech-scs": set[int](),
@@ -29,7 +29,7 @@ _INSTRUCTIONS = {
     "dynamixel-mx": {_BULK_READ},
     "dynamixel-x": {_SYNC_READ, _FAST_SYNC_READ, _BULK_READ},
 }
-# Bit of an answer's error byte, or of the register for hardware errors, that tells of too high a temperature.
+# Overheating bit, in an answer's error byte or the register for hardware errors; error of a write that is refused.
 _OVERHEATED = 1 << 2
 _NOT_WRITABLE = 7
 
@@ -46,7 +46,7 @@ class EmulatedRegisters(EmulatedLine):
     traits : ServoTraits, optional
         What they are like.
     return_delay : float, optional
-        Time until they answer, of Dynamixel servos [s]; by default as they are delivered.
+        Time until Dynamixel servos answer [s]; by default with their factory settings.
     **line
         Passed on to `EmulatedLine`.
 
@@ -163,7 +163,7 @@ class EmulatedRegisters(EmulatedLine):
                 yield id, self._status(id, b"", refused)
 
     def _has_delay(self, id: int) -> bool:
-        # Dynamixel's status level 1 answers to reading only, as Feetech's level 0 does.
+        # True for Dynamixel, whose status level 1 answers to ping and read only, as Feetech's level 0 does.
         return self.memory[id].has("return_delay") and not self.memory[id].has("lock")
 
     def _pong(self, id: int) -> tuple[int, bytes]:
@@ -189,7 +189,7 @@ class EmulatedRegisters(EmulatedLine):
         word, memory = 2 if self._two else 1, self.memory[id]
         address = self._number(data, 0, word)
         stopped = memory.has("watchdog") and memory.get("watchdog") == -1
-        # X servos take no goal after their watchdog has stopped them, and write to EEPROM without torque only.
+        # X servos refuse goals after their watchdog has stopped them, and writes to EEPROM while their torque is on.
         locked = self._two and self.servos[id].torque and address < memory.address("torque")
         if locked or (stopped and memory.touches("goal", address, len(data) - word)):
             return _NOT_WRITABLE

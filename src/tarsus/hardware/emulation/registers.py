@@ -11,12 +11,12 @@ from tarsus.hardware.emulation.supply import Supply
 
 __all__ = ["ServoMemory"]
 
-# Below this speed a servo says that it stands [turns/s].
+# Speed up to which a servo reports that it stands still [turns/s].
 _STANDING = 1e-3
 
 
 class ServoMemory:
-    """Registers of a servo: what is measured is filled in when they are read, what is written reaches the servo.
+    """Registers of a servo: measured values are filled in when they are read, written ones are passed to the servo.
 
     Parameters
     ----------
@@ -29,7 +29,7 @@ class ServoMemory:
     byteorder : str
         ``"little"`` or ``"big"``.
     initial : dict of str to int
-        Registers that are not 0 at first.
+        Initial values of registers that are not 0 at first.
     """
 
     def __init__(
@@ -142,7 +142,7 @@ class ServoMemory:
         self._carry_out(written)
 
     def restart(self) -> None:
-        """Set what is not kept without supply to what it is at first."""
+        """Reset the registers that are lost without supply to their initial values."""
         for name, one in self._registers.items():
             if "eeprom" not in one.access and "w" in one.access:
                 self.set(name, self._initial.get(name, 0))

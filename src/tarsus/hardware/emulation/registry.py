@@ -33,7 +33,7 @@ EMULATIONS: dict[str, Callable[..., EmulatedServos]] = {
     "lines": EmulatedLines,
     "pca9685": EmulatedPca9685,
 }
-"""What makes emulated servos, by the name of the bus."""
+"""Callables that make emulated servos, by the name of the bus."""
 
 
 def emulate(name: str, ids: Iterable[int], **line: Any) -> Any:

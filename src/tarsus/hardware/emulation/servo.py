@@ -9,9 +9,9 @@ from tarsus.representation import represented
 
 __all__ = ["EmulatedServo", "ServoTraits"]
 
-# Error of the position at which the motor gets its full drive [turns].
+# Position error at which the motor gets its full drive [turns].
 _FULL_DRIVE = 6.0 / 360.0
-# Rise of temperature at full drive, in the end [K]; time constant of the case [s].
+# Final rise of temperature at full drive [K]; thermal time constant of the case [s].
 _HEATING, _HEAT_TIME = 90.0, 90.0
 
 
@@ -160,6 +160,6 @@ class EmulatedServo:
             self.overheated, self.torque = True, False
 
     def reset(self) -> None:
-        """Lose torque, goal and limits, as after the supply was gone."""
+        """Lose torque, goal and limits, as after a failure of the supply."""
         self.torque, self.overheated = False, False
         self.goal, self.speed_limit, self.torque_limit = self._motor, math.inf, 1.0

@@ -12,6 +12,7 @@ from tarsus.representation import represented
 
 __all__ = ["EmulatedServos"]
 
+# Length of a step; longest time that is divided into steps, after which one step covers the rest [s].
 _STEP, _WATCHED = 0.02, 3.0
 
 
@@ -69,7 +70,7 @@ class EmulatedServos:
             The time [s], on the transport's clock: behind a pseudo-terminal that of `time.perf_counter`.
         """
         before = now if self._time is None else self._time
-        # In steps while a watchdog may act, so that it acts when it should.
+        # Time goes on in steps while a watchdog may act, so that it acts at the right time.
         steps = math.ceil(min(now - before, _WATCHED) / _STEP)
         for step in range(1, steps):
             self._step(before + step * _STEP)
@@ -99,7 +100,7 @@ class EmulatedServos:
         """Carry out what the watchdog does after a time without requests; by default there is none."""
 
     def _follow(self) -> None:
-        """Let servos follow the pulses that they have; by default they have none."""
+        """Let servos follow the pulses that they receive; by default they receive none."""
 
     def _started_anew(self) -> None:
         """Forget what is lost without supply."""

@@ -40,7 +40,7 @@ class Supply:
         self._booted = -math.inf
 
     def advance(self, now: float, servos: Collection[EmulatedServo]) -> None:
-        """Move servos on to a time, with the voltage that they leave each other.
+        """Move servos on to a time, at the voltage that remains under their common current.
 
         Parameters
         ----------
@@ -58,7 +58,7 @@ class Supply:
             servo.advance(now, self.voltage / self.nominal)
 
     def up(self, now: float) -> bool:
-        """Return whether servos answer: whether they have started since the voltage was too low.
+        """Return whether servos answer: the voltage is high enough, and they have restarted since it was too low.
 
         Parameters
         ----------

@@ -30,4 +30,4 @@ INITIAL = {
     "dynamixel-mx": {**_DYNAMIXEL, "model": 29, "firmware": 36, "torque_limit": 1023},
     "dynamixel-ax": {**_DYNAMIXEL, "model": 12, "firmware": 24, "torque_limit": 1023},
 }
-"""Registers that are not 0, by the name of the bus."""
+"""Initial values of registers that are not 0, by the name of the bus."""
