@@ -1,4 +1,4 @@
-"""The last thing before the bus: commands within the limits of the calibration and the speeds of the joints."""
+"""The last stage before the bus: keeps commands within the limits of the calibration and the speeds of the joints."""
 
 from __future__ import annotations
 
@@ -17,10 +17,10 @@ __all__ = ["CommandLimiter"]
 
 
 class CommandLimiter:
-    """Turns joint angles into whole commands: never beyond a limit, never faster than a joint.
+    """Turns joint angles into whole commands, never beyond a limit and never faster than the joint moves.
 
-    Whatever it is given, each command is within `Calibration.command_limits`, and differs from the one before by no
-    more than the joint's greatest speed times the time between them.
+    Whatever angles it is given, each command is within `Calibration.command_limits`, and differs from the one before
+    by no more than the joint's greatest speed times the time between them.
 
     Parameters
     ----------
@@ -67,7 +67,7 @@ class CommandLimiter:
         angles : array, shape (legs, 3)
             Joint angles to execute [rad].
         elapsed : float
-            Time since the last commands [s]; without a time that is finite and positive, nothing moves.
+            Time since the last commands [s]; nothing moves unless it is finite and positive.
 
         Raises
         ------

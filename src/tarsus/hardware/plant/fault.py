@@ -30,7 +30,7 @@ class FaultKind(StrEnum):
 
 
 class Reaction(StrEnum):
-    """What the robot does, before it is without torque."""
+    """What the robot does after a fault: sit down before its servos are released, or release them at once."""
 
     SIT = "sit"
     LIMP = "limp"
@@ -58,7 +58,7 @@ REACTIONS: Mapping[FaultKind, tuple[Reaction, str]] = MappingProxyType(
         FaultKind.INVALID_COMMAND: (Reaction.SIT, "Look for a division by zero in what commands the joints."),
     }
 )
-"""For each kind of fault what the robot does, and what would help."""
+"""What the robot does, and what would help, for each kind of fault."""
 
 
 @represented()

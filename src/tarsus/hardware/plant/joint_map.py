@@ -1,4 +1,4 @@
-"""Which servo of which bus is which joint."""
+"""Maps the servos of each bus to joints."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ Joint: TypeAlias = tuple[int, int]
 
 
 class JointMap:
-    """Joints by bus and number, and back.
+    """Maps servos, by bus and number, to joints, and joints to servos.
 
     Parameters
     ----------
@@ -63,7 +63,7 @@ class JointMap:
         return others
 
     def numbers(self, bus: str, legs: Iterable[int] | None = None) -> tuple[int, ...]:
-        """Return ids or channels on a bus, of some legs or of all.
+        """Return the ids or channels on a bus, of the given legs or of all.
 
         Parameters
         ----------

@@ -12,7 +12,7 @@ from tarsus.representation import represented
 __all__ = ["Pacer", "Timing"]
 
 
-# How much of a lateness is remembered from tick to tick.
+# Share of the recent lateness that is kept from one tick to the next.
 _FADING = 0.97
 
 
@@ -45,7 +45,7 @@ class Pacer:
     clock : Clock
         The clock.
     recently_late : float
-        How late ticks began before [s].
+        Recent lateness to start with, for example that of an earlier pacer [s].
     """
 
     def __init__(self, clock: Clock, *, recently_late: float = 0.0) -> None:
@@ -64,7 +64,7 @@ class Pacer:
         dt : float
             Duration of the tick that begins [s].
         excused : bool
-            Whether a lateness is not the computer's: the last tick waited for answers.
+            Whether lateness does not count in `recently_late`, because the last tick waited for answers.
         """
         now = self._clock.now()
         if self._next is None:
@@ -83,7 +83,7 @@ class Pacer:
 
     @property
     def recently_late(self) -> float:
-        """How late ticks began of late: the worst, fading within a second or so [s]."""
+        """How late recent ticks began: the worst lateness, which fades within a second or so [s]."""
         return self._recent
 
     @property

@@ -15,16 +15,16 @@ __all__ = ["Ports", "open_buses"]
 
 
 class Ports:
-    """The buses and the inertial sensor of a machine; those that were given stay open at the end.
+    """The buses and the inertial sensor of a machine; buses that the caller gives stay open at the end.
 
     Parameters
     ----------
     calibration : Calibration
         Its calibration.
     buses : mapping of str to Bus, optional
-        The buses by their names in the calibration; opened from its ports where left out.
+        The buses by their names in the calibration; opened on its ports where left out.
     imu : AttitudeLine, optional
-        The inertial sensor; that of the calibration where the buses are opened.
+        The inertial sensor; that of the calibration where left out and the buses are opened here.
     timeout : float
         Longest time until an answer begins [s].
 
@@ -77,7 +77,7 @@ def open_buses(calibration: Calibration, *, timeout: float | None = None) -> Map
     calibration : Calibration
         The calibration; each bus needs a port.
     timeout : float, optional
-        Longest time until an answer begins, where a bus has answers [s].
+        Longest time until an answer begins, for buses whose servos answer [s].
 
     Raises
     ------

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 __all__ = ["ServoOutput"]
 
-# How often a servo is looked for before the first motion.
+# How many times missing servos are searched for before the first motion.
 _TRIES = 3
 # Shares of the torque with which a robot that can't sit down sinks to the ground, and how long each lasts [s].
 _FADING, _FADE = (0.5, 0.35, 0.25, 0.15, 0.08), 0.25
@@ -48,9 +48,9 @@ class ServoOutput:
     Attributes
     ----------
     powered : bool
-        Whether servos may hold.
+        Whether servos may have torque.
     writing : float
-        How long the commands of a tick take on the wire, all buses at the same time [s].
+        How long the commands of a tick take on the wire, with all buses in parallel [s].
     """
 
     def __init__(
@@ -77,7 +77,7 @@ class ServoOutput:
         return self._calibration.angles(sent)
 
     def find(self) -> None:
-        """Refuse to go on where a servo does not answer.
+        """Search for the servos, and raise an error where one does not answer.
 
         Raises
         ------
@@ -105,14 +105,14 @@ class ServoOutput:
                 )
 
     def switch_on(self, angles: Float[np.ndarray, "legs 3"], *, measured: bool) -> None:
-        """Give each servo the command of where it is before it holds, one leg after the other.
+        """Switch on the servos one leg after the other, each with its present position as its command.
 
         Parameters
         ----------
         angles : array, shape (legs, 3)
             Where the joints are [rad].
         measured : bool
-            Whether that is measured; otherwise one servo after the other gets its first pulse.
+            Whether these angles are measured; otherwise servos get their first pulse one at a time.
         """
         goals = self._joints.goals(self._limiter.begin(angles))
         self.powered = True
@@ -134,16 +134,16 @@ class ServoOutput:
                 bus.set_watchdog(self._joints.numbers(name), min(max(self._settings.watchdog, span[0]), span[1]))
 
     def send(self, angles: Float[np.ndarray, "legs 3"], dt: float, now: float) -> None:
-        """Send joint angles, as far as limits and speeds allow, and wait until they have left.
+        """Send joint angles, as far as limits and speeds allow, and wait until they have been transmitted.
 
-        Ports take commands at once; whoever is asked answers only then.
+        A port accepts commands at once, but servos answer a request only after the commands have been transmitted.
 
         Parameters
         ----------
         angles : array, shape (legs, 3)
             Joint angles [rad].
         dt : float
-            Duration of the tick: they move no farther than in this time [s].
+            Duration of the tick; joints move no farther than they can in this time [s].
         now : float
             The time [s].
 
@@ -178,7 +178,7 @@ class ServoOutput:
         self._joints = self._joints.without(joint.bus, joint.number)
 
     def let_down(self) -> None:
-        """Let the torque of all servos that can do so fade."""
+        """Reduce the torque in steps, on all buses that can limit it."""
         for share in _FADING:
             able = [(name, bus) for name, bus in self._buses.items() if bus.capabilities.torque_limit]
             for name, bus in able:

@@ -38,9 +38,9 @@ if TYPE_CHECKING:
 __all__ = ["ServoPlant"]
 
 _START_TICK = 0.02
-# Share of the greatest rate at which answers may be late now and then.
+# Share of the greatest rate that leaves enough time for answers that are late now and then.
 _RESERVED = 0.8
-# How late a computer may be of which nothing is known yet [s].
+# Lateness of ticks that is assumed before any is measured [s].
 _UNKNOWN = 0.02
 
 
@@ -142,7 +142,7 @@ class ServoPlant:
     @property
     def greatest_rate(self) -> float:
         """Ticks per second that the wires carry: goals of all servos, and positions of half of them [1/s]."""
-        # Several buses take their goals at the same time; positions are read from one after the other.
+        # Buses take their goals in parallel; positions are read from one bus after the other.
         reading = sum(each.positions for each in self._rates) / 2 + self._input.seconds
         return 1.0 / max(self._servos.writing + reading, 1e-6)
 
@@ -167,7 +167,7 @@ class ServoPlant:
     def start(self, output: ControlOutput) -> None:
         """Find the servos, switch them on where they are, and move them slowly to where the controller starts.
 
-        Without measured positions the servos of one leg after the other get their pulses, at the declared angles.
+        Without measured positions the servos get their first pulses at the declared angles, leg by leg.
 
         Parameters
         ----------
@@ -195,7 +195,7 @@ class ServoPlant:
             for angles in glide(begin, output.angles, speed=self.settings.start_speed, dt=_START_TICK):
                 self._tick(angles, _START_TICK)
         except BaseException:
-            # Whoever starts a plant in vain does not stop it.
+            # A caller whose start failed does not call `stop`.
             self.release()
             raise
         self._input.forget_motion()
@@ -271,14 +271,14 @@ class ServoPlant:
             try:
                 self._observer(self._input.record(now, asked=asked, sent=self._servos.angles, fault=problem))
             except Exception:
-                # Without it the robot can still sit down.
+                # Without the observer the robot can still sit down.
                 self._observer = None
                 raise
 
     # How it ends.
 
     def _sit_down(self) -> None:
-        """Lower the body to the ground, as far as the servos do it; what failed is known already."""
+        """Lower the body to the ground, as far as the servos manage it, without looking for faults any more."""
         self._belly = True
         if self.fault is not None and self.fault.kind is FaultKind.STUCK:
             # A servo that can't move must not burn while the others sit down.

@@ -20,7 +20,7 @@ __all__ = ["SITTING_TICK", "sitting_angles"]
 SITTING_TICK = 0.02
 """Duration of a tick while the robot sits down [s]."""
 
-# Share of the joints' speed: slow, but over before a servo that overheats lets go.
+# Share of the joints' greatest speed: slow, but the motion ends before an overheating servo switches itself off.
 _SPEED = 0.25
 
 

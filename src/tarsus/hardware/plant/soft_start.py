@@ -24,7 +24,7 @@ _BEYOND = math.radians(20)
 
 
 def glide_duration(start: Float[np.ndarray, "legs 3"], end: Float[np.ndarray, "legs 3"], speed: float) -> float:
-    """Return how long a slow motion takes, whose fastest joint just reaches a speed [s].
+    """Return how long a motion of `glide` takes, in which the fastest joint just reaches the given speed [s].
 
     Parameters
     ----------
@@ -56,7 +56,7 @@ def glide(
 
 
 def release_order(legs: int) -> Iterator[int]:
-    """Yield the legs in the order in which they get their pulses: one side and the other in turn, never neighbours.
+    """Yield the legs in the order in which they are switched on: sides alternate, and no leg follows its neighbour.
 
     Parameters
     ----------
@@ -73,7 +73,7 @@ def release_order(legs: int) -> Iterator[int]:
 def check_start(
     calibration: Calibration, angles: Float[np.ndarray, "legs 3"], known: Bool[np.ndarray, "legs 3"]
 ) -> None:
-    """Refuse to start where a joint is measured far beyond its limits: its zero or direction is wrong.
+    """Raise an error where a joint is measured far beyond its limits, as its zero or direction must be wrong.
 
     Parameters
     ----------
@@ -87,7 +87,7 @@ def check_start(
     Raises
     ------
     InputError
-        If a joint is there.
+        If a joint is measured that far beyond its limits.
     """
     limits = calibration.limits
     beyond = np.where(known, np.maximum(limits[..., 0] - angles, angles - limits[..., 1]), 0.0)

@@ -15,17 +15,17 @@ from tarsus.hardware.plant.settings import PlantSettings
 
 __all__ = ["AnswerMonitor"]
 
-# Of a whole bus with fewer servos than these nothing follows from their common silence.
+# The common silence of no more servos than this says nothing about the whole bus.
 _FEW = 3
-# A delay of the computer that is worth mentioning, and the time between requests as long as no tick is known [s].
+# Least delay of the computer that a fault mentions, and time between requests as long as no tick is known [s].
 _TICK = 0.03
 
 
 class AnswerMonitor:
     """Notices silence and damaged answers.
 
-    Time during which this computer itself did not run, as other programs kept it from running, is none in which a servo
-    was silent.
+    Time in which the computer did not run this program, because others kept it busy, does not count as a servo's
+    silence.
 
     Parameters
     ----------
@@ -39,9 +39,9 @@ class AnswerMonitor:
     Attributes
     ----------
     grace : float
-        On a computer that is late itself, what is late to answer is not silent yet [s].
+        How much longer a servo may be silent because the computer itself is late [s].
     interval : float
-        Time that passes between two requests; where more passed, nobody was asked [s].
+        Time between two requests to a servo; silence before its first failure counts for no longer than this [s].
     """
 
     def __init__(self, calibration: Calibration, joints: JointMap, settings: PlantSettings) -> None:
@@ -70,7 +70,7 @@ class AnswerMonitor:
         bus : str
             Name of the bus.
         asked, answered : collection of int
-            Who was asked, and who gave a valid answer.
+            Servos that were asked, and those that gave a valid answer.
         errors : iterable of BusError
             Why the others did not.
         now : float
@@ -101,7 +101,7 @@ class AnswerMonitor:
         late = float(self._late[place])
         doubted = now - float(self._failing_since[place])
         answered, failing = float(self._answered[place]), float(self._failing_since[place])
-        # Silence began at the last answer, unless nobody was asked for a while before the first failure.
+        # Silence began at the last answer, unless the servo was not asked for a while before its first failure.
         since = now - (failing if math.isnan(answered) else max(answered, failing - self.interval)) - late
         if (
             self._failures[place] < settings.least_failures

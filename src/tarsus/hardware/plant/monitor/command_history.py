@@ -1,4 +1,4 @@
-"""What was sent, and when: what a joint should do by now, at the delay with which these servos follow."""
+"""What was sent, and when: hence where a joint should be by now, given the delay with which servos follow."""
 
 from __future__ import annotations
 
@@ -15,17 +15,17 @@ __all__ = ["CommandHistory"]
 
 _SAME = 1e-6
 _KEPT = 100
-# Delays that are tried, how long an error counts, and the greatest that does [s, s, rad].
+# Delays that are tried [s], time constant with which their errors fade [s], and the most that one error counts [rad].
 _DELAYS, _MEMORY, _LARGEST = np.arange(0.0, 0.061, 0.01), 4.0, math.radians(5)
-# What the delay of the settings is worth at first, for each second beside it [rad/s].
+# Error of a delay before any is measured, per second that it differs from the delay of the settings [rad/s].
 _PRIOR = 20.0
 
 
 class CommandHistory:
     """Keeps commands with their times.
 
-    Where readings are farther apart than servos take to follow, a joint moves by a whole tick's way within the
-    uncertainty of their delay. So it is measured there: the delay at which motions are most like those commanded.
+    Where readings are farther apart than servos take to follow, a small error of their delay is worth the motion of a
+    whole tick. There the delay is measured: it is the one at which motions are most like those commanded.
 
     Parameters
     ----------
@@ -46,12 +46,12 @@ class CommandHistory:
         return float(_DELAYS[int(np.argmin(self._errors))]) if self._measured else self._default
 
     def add(self, time: float, sent: Float[np.ndarray, "legs 3"]) -> tuple[float, float]:
-        """Take note of what was sent, and return how long after the last it was, and how far it is from that [s, rad].
+        """Add what was sent, and return the time since the last commands and the greatest change of angle [s, rad].
 
         Parameters
         ----------
         time : float
-            When it had left [s].
+            When it had been transmitted [s].
         sent : array, shape (legs, 3)
             Joint angles [rad].
         """
@@ -65,14 +65,14 @@ class CommandHistory:
     def expected(
         self, times: Float[np.ndarray, "legs 3"], delay: float | None = None
     ) -> Float[np.ndarray, "legs 3"] | None:
-        """Return what joints should have followed by some times; None where that is too long ago.
+        """Return the commands that joints should have followed by some times; None where the history is too short.
 
         Parameters
         ----------
         times : array, shape (legs, 3)
             When each was measured [s].
         delay : float, optional
-            After how long they follow [s].
+            Time after which they follow; `delay` where left out [s].
         """
         after = self.delay if delay is None else delay
         index = np.searchsorted(np.array(self._times), times - after + _SAME, side="right") - 1
@@ -90,7 +90,7 @@ class CommandHistory:
         times: Float[np.ndarray, "2 legs 3"],
         which: Bool[np.ndarray, "legs 3"],
     ) -> None:
-        """Take note of motions between two readings that are far apart.
+        """Compare motions between two readings that are far apart with those commanded, to measure the delay.
 
         Parameters
         ----------

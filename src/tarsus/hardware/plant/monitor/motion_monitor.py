@@ -2,7 +2,7 @@
 
 A joint that is stuck does not move; but healthy servos stand still too while their commands move: in the play of their
 gears, in friction, and where the load on a leg changes as fast as its command. How far commands move meanwhile is the
-dead zone of the machine. It is measured all the time, for coxas, femurs and tibias apart, and a joint is taken for
+dead zone of the machine. It is measured all the time, separately for coxas, femurs and tibias, and a joint is taken for
 stuck where its command has moved well beyond it.
 """
 
@@ -24,15 +24,16 @@ if TYPE_CHECKING:
 __all__ = ["MotionMonitor"]
 
 _SAME = 1e-6
-# What counts as a motion: an angle [rad], steps of the position sensor, a share of the command's.
+# A joint has moved if it is beyond all of these: an angle [rad], steps of its sensor, a share of its command's motion.
 _ANGLE, _STEPS, _SHARE = math.radians(0.25), 1.5, 0.2
 # How many readings in a row must show that a joint stands still.
 _READINGS = 2
-# A command is beyond the dead zone by this factor; how long what is seen of it counts while joints move [s].
+# Factor on the dead zone in the bound of a stuck joint; time constant with which it fades while commands move [s].
 _FACTOR, _MEMORY = 1.5, 8.0
 # Where a joint is looked at less often, it counts as still for this long after a look that found it so [s].
 _LOOK = 0.02
-# Between looks that are farther apart than this, how far a joint came tells when it stood still [s].
+# Looks farther apart than this are rare: how far a joint came between them tells when it stopped. Those farther apart
+# than the second are not used to measure the delay [s].
 _SELDOM, _LONG = 0.025, 0.5
 # Slower commands show nothing of the dead zone [rad/s].
 _SLOW = math.radians(5)
@@ -51,7 +52,7 @@ class MotionMonitor:
     Attributes
     ----------
     suspicion : array, shape (legs, 3)
-        How far the command of a joint that stood still when it was last looked at has moved, as a share of `bound`.
+        How far each command had moved while its joint stood still, when last looked at, as a share of `bound`.
     doubtful : array of bool, shape (legs, 3)
         Which joints are stuck if another reading finds them in the same place.
     """
@@ -69,7 +70,7 @@ class MotionMonitor:
         # Where each joint was when it moved last: measured, commanded, when, and how often it was looked at since.
         self._at, self._commanded = np.full(self._shape, np.nan), np.full(self._shape, np.nan)
         self._since, self._looks = np.full(self._shape, np.nan), np.zeros(self._shape, dtype=int)
-        # When each joint was looked at last, where it and its command were, and how far the command had moved by then.
+        # When each joint was looked at last, how far its command had moved by then; where it and its command were.
         self._looked, self._passed = np.full(self._shape, np.nan), np.zeros(self._shape)
         self._seen, self._asked = np.full(self._shape, np.nan), np.full(self._shape, np.nan)
         self._behind_since = np.full(self._shape, np.nan)
@@ -103,7 +104,7 @@ class MotionMonitor:
         times : array, shape (legs, 3), optional
             When each of them was measured last; now where left out [s].
         sent_at : float, optional
-            When the commands had left; now where left out [s].
+            When the commands had been transmitted; now where left out [s].
         """
         settings = self._settings
         passed, moving = self._history.add(now if sent_at is None else sent_at, sent)
@@ -119,12 +120,12 @@ class MotionMonitor:
         self._looks += read
         moved = np.abs(measured - self._at) > np.maximum(self._noise, _SHARE * commanded)
         long = now - self._since >= settings.stuck_window - _SAME
-        # A command that comes back to where a load has bent the leg moves nothing either.
+        # A command that comes back to where a load has pushed the joint does not move it: that joint is not behind.
         rare = when - self._looked > _SELDOM
         standing = (
             read & ~moved & long & (commanded > self.bound) & (behind > np.where(rare, self.bound, self.bound / 2))
         )
-        # Between rare looks a command comes far: whoever has just set out after it is not stuck.
+        # Between rare looks a command moves far: a joint that has just begun to follow it is not stuck.
         standing &= ~(rare & (np.abs(measured - self._seen) > self._noise))
         still, self.doubtful = standing & (self._looks >= _READINGS), standing & (self._looks < _READINGS)
         stuck = still | self._far(behind, read, now)
@@ -158,7 +159,7 @@ class MotionMonitor:
     def _measure_delay(
         self, measured: Float[np.ndarray, "legs 3"], when: Float[np.ndarray, "legs 3"], read: Bool[np.ndarray, "legs 3"]
     ) -> None:
-        """Compare motions between looks that are far apart with what was commanded."""
+        """Measure the delay of servos from motions between rare looks."""
         apart = when - self._looked
         which = read & (apart > _SELDOM) & (apart < _LONG) & (np.abs(measured - self._seen) > self._noise)
         if which.any():
@@ -167,7 +168,7 @@ class MotionMonitor:
     def _short(
         self, measured: Float[np.ndarray, "legs 3"], expected: Float[np.ndarray, "legs 3"], now: float
     ) -> tuple[Float[np.ndarray, "legs 3"], Float[np.ndarray, "legs 3"]]:
-        """Return how far joints came short of their commands since a look long ago, and that as a share; else 0."""
+        """Return how far joints fell short of their commands between rare looks, and that as a share; else 0."""
         way = expected - self._asked
         come = np.clip((measured - self._seen) * np.sign(way), 0.0, np.abs(way))
         seldom = (now - self._looked > _SELDOM) & (np.abs(way) > self._noise)
@@ -175,7 +176,7 @@ class MotionMonitor:
         return np.where(seldom, share * way, 0.0), share
 
     def _learn(self, commanded: Float[np.ndarray, "legs 3"], which: Bool[np.ndarray, "legs 3"], now: float) -> None:
-        """Take note of how far commands went before joints that stood still moved on."""
+        """Widen the dead zone to how far commands moved before joints that stood still moved on."""
         until = np.minimum(self._looked + _LOOK, now)
         share = (until - self._looked) / np.maximum(now - self._looked, _SAME)
         long = until - self._since >= self._settings.stuck_window - _SAME

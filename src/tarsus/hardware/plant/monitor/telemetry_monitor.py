@@ -15,7 +15,7 @@ from tarsus.hardware.plant.settings import PlantSettings
 
 __all__ = ["TelemetryMonitor", "least_voltage"]
 
-# A servo whose alarm says so lets go by itself.
+# Alarms by the fault that they mean: a servo that reports one switches itself off.
 _ALARMS = ((FaultKind.OVERHEATED, ("temperature", "overheating")), (FaultKind.OVERLOADED, ("overload",)))
 
 

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 __all__ = ["FootContacts", "thresholds_of"]
 
-# A board that did not answer several times is asked again after a pause [s], as asking it takes most of a tick.
+# After so many failures in a row a board is asked again only after a pause [s], as each request takes most of a tick.
 _SEVERAL, _PAUSE = 3, 0.2
 
 
@@ -79,7 +79,7 @@ class FootContacts:
         return None if self._read is None else max(0.0, self._clock.now() - self._read)
 
     def read(self) -> str:
-        """Read the switches, and return why they could not be read several times in a row: empty where they could.
+        """Read the switches, and return why several reads in a row have failed; empty otherwise.
 
         Raises
         ------
@@ -106,7 +106,7 @@ class FootContacts:
         return ""
 
     def contacts(self, planned: Bool[np.ndarray, "legs"]) -> Bool[np.ndarray, "legs"]:
-        """Return which feet touch the ground: as planned where a leg has no switch.
+        """Return which feet touch the ground; as planned where a leg has no switch, or it was never read.
 
         Parameters
         ----------

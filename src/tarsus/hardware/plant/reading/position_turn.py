@@ -1,4 +1,4 @@
-"""Whose positions are read in a tick: all of them where the wire carries them, else the urgent ones first."""
+"""Chooses the servos whose positions are read in a tick: all where the wire carries them, else urgent ones first."""
 
 from __future__ import annotations
 
@@ -9,14 +9,14 @@ from tarsus.hardware.bus.protocol import Bus
 
 __all__ = ["PositionTurn"]
 
-# Who is suspected to be stuck gets this share of the turns at most: the others must not be left out.
+# Joints suspected to be stuck get at most this share of the turns, so that the others are not left out.
 _SUSPECTS = 1 / 4
-# How much of a measured duration is believed at once.
+# Weight of a new measurement in the running mean of the duration.
 _NEW = 0.2
 
 
 class PositionTurn:
-    """Tells whose position is read next.
+    """Chooses the servos of a bus whose positions are read next.
 
     Parameters
     ----------
@@ -30,13 +30,13 @@ class PositionTurn:
     failed : tuple of int
         Those whose last request failed.
     last : tuple of int
-        Those whose turn was in the last tick.
+        Those that were chosen in the last tick.
     """
 
     def __init__(self, bus: Bus, numbers: tuple[int, ...]) -> None:
         self._whole = bus.timing(numbers).positions
         self._one_by_one = math.isclose(self._whole, len(numbers) * bus.timing(numbers[:1]).positions)
-        # Those first that were not asked for longest.
+        # In the order in which they were last asked, the longest ago first.
         self._waiting = list(numbers)
         self._numbers = numbers
         self._suspects: tuple[int, ...] = ()
@@ -60,9 +60,9 @@ class PositionTurn:
         return self._whole * count / len(self._numbers)
 
     def took(self, servos: int, seconds: float) -> float:
-        """Take note of how long reading took, and return how much longer each request takes than was known [s].
+        """Take note of how long reading took, and return how much longer each request took than known so far [s].
 
-        Adapters add to each request.
+        Adapters add a delay to each request.
 
         Parameters
         ----------
@@ -77,14 +77,14 @@ class PositionTurn:
         return longer
 
     def next(self, share: float) -> tuple[tuple[int, ...], ...]:
-        """Return the next servos: those that did not answer, then some that are suspected, then the others in turn.
+        """Return the next servos: those that did not answer, then some suspected ones, then the others in turn.
 
         Those that did not answer are a group of their own, so that they are judged before the others are read.
 
         Parameters
         ----------
         share : float
-            For which share of all servos there is time in the tick.
+            Share of all servos for which there is time in the tick.
         """
         if share >= 1.0:
             self.last = self._numbers
@@ -97,17 +97,17 @@ class PositionTurn:
         return tuple(group for group in (failed, chosen[len(failed) :]) if group)
 
     def suspect(self, numbers: Iterable[int]) -> None:
-        """Take note of who is to be looked at more often.
+        """Set the servos that are to be read more often.
 
         Parameters
         ----------
         numbers : iterable of int
-            The servos.
+            The servos, the most suspected first.
         """
         self._suspects = tuple(numbers)
 
     def asked(self, numbers: Collection[int], answered: Collection[int]) -> None:
-        """Take note of who was asked and who answered.
+        """Take note of which servos were asked and which answered.
 
         Parameters
         ----------

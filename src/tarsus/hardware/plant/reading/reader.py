@@ -22,11 +22,11 @@ if TYPE_CHECKING:
 
 __all__ = ["WHOLE", "Reading", "ServoReader"]
 
-# Share of a tick that the wire may be busy, and that of positions in what goals leave of it: on a slow line each servo
-# then tells its position in one tick and its temperature in the next.
+# Share of a tick that the wire may be busy, and the share of positions in what the goals leave of that time: on a slow
+# line each servo then reports its position in one tick and its temperature in the next.
 WHOLE, _POSITIONS = 0.925, 0.5
 _SUSPECTED = 0.25
-# How much longer a tick may last on a slow line, where servos are asked again to find out whether they are silent [s].
+# How much longer a tick may last on a slow line, to retry servos that did not answer [s].
 _DOUBT = 0.03
 
 
@@ -38,11 +38,11 @@ class Reading(NamedTuple):
     bus : str
         Name of the bus.
     asked, answered : collection of int
-        Who was asked, and who answered.
+        Servos that were asked, and those that answered.
     errors : tuple of BusError
         Why the others did not.
     telemetry : mapping of int to Telemetry
-        What servos told of themselves, by id.
+        What servos reported of themselves, by id.
     """
 
     bus: str
@@ -90,7 +90,7 @@ class ServoReader:
             if bus.capabilities.telemetry and joints.numbers(name)
         }
         self.read = np.zeros(shape, dtype=bool)
-        # For which share of all servos a tick has time.
+        # Share of all servos whose positions a tick has time for.
         self._share = 1.0
         self._groups: dict[str, tuple[tuple[int, ...], ...]] = {}
 
@@ -118,9 +118,9 @@ class ServoReader:
         return self.angles.copy()
 
     def plan(self, dt: float, *, writing: float) -> bool:
-        """Choose whose position is read in a tick, and return whether telemetry is to be read before.
+        """Choose the servos whose positions are read in a tick, and return whether telemetry is to be read first.
 
-        On a slow line positions come last: then servos have had most of the tick to follow their commands.
+        On a slow line positions come last: by then servos have had most of the tick to follow their commands.
 
         Parameters
         ----------
@@ -136,7 +136,7 @@ class ServoReader:
         return self._share < 1.0 and not failing
 
     def positions(self, dt: float, *, begun: float) -> Iterator[Reading]:
-        """Read positions, and yield who answered; ask again who did not, where that is not done soon by the next tick.
+        """Read positions, and yield each reading; on a slow line, retry within the tick where servos do not answer.
 
         Parameters
         ----------
@@ -153,7 +153,7 @@ class ServoReader:
             yield from self._doubted(name, dt, begun)
 
     def again(self, which: Bool[np.ndarray, "legs 3"]) -> Iterator[Reading]:
-        """Read some positions once more, where the next look would come late, and yield who answered.
+        """Read some positions once more on a slow line, where the next look would come late, and yield each reading.
 
         Parameters
         ----------
@@ -172,7 +172,7 @@ class ServoReader:
         Parameters
         ----------
         suspicion : array, shape (legs, 3)
-            How far each is on the way to be taken for stuck; those from half on are suspected, the worst first.
+            How near each is to being taken for stuck, at 1; those above a quarter are suspected, the worst first.
         """
         for name, turn in self._turns.items():
             worst = {number: suspicion[self._joints.joint(name, number)] for number in self._joints.numbers(name)}
@@ -182,10 +182,10 @@ class ServoReader:
                 self._telemetry[name].suspect(numbers)
 
     def telemetry(self, dt: float, *, begun: float) -> Iterator[Reading]:
-        """Read the telemetry of as many servos as the tick has time for, and yield what they tell.
+        """Read the telemetry of as many servos as the tick has time for, and yield each reading.
 
-        Servos that report an alarm with their position come first. Where each value takes a request, who does not
-        answer is asked for its position at once.
+        Servos that report an alarm with their position come first. On a slow line where each value takes a request, a
+        servo that does not answer, while others do, is asked for its position at once.
 
         Parameters
         ----------
@@ -201,7 +201,7 @@ class ServoReader:
             try:
                 for asked, answers in turn.read(dt, left=left, beside=beside):
                     if positions is None or not turn.separate:
-                        # Whether it answers is judged by its positions.
+                        # Whether a servo answers is judged by its positions alone.
                         yield Reading(name, (), (), (), answers.values)
                         continue
                     positions.asked(asked, answers.values)
@@ -215,7 +215,7 @@ class ServoReader:
 
     @property
     def _coming(self) -> float:
-        """How long reading the positions takes that were planned and not read yet [s]."""
+        """How long it takes to read the positions that are planned and not read yet [s]."""
         return sum(self._turns[name].share(sum(map(len, chosen))) for name, chosen in self._groups.items())
 
     @property
@@ -229,7 +229,7 @@ class ServoReader:
         return np.maximum(self._clock.now() - self._times, 0.0)
 
     def _doubted(self, name: str, dt: float, begun: float) -> Iterator[Reading]:
-        """Ask again who did not answer, where that is not done soon by the next tick."""
+        """Retry servos that did not answer, on a slow line, where the next tick would come too late for that."""
         turn = self._turns[name]
         while self._share < 1.0 and turn.failed and self._clock.now() - begun < WHOLE * dt + _DOUBT:
             yield self._read(name, turn.failed)

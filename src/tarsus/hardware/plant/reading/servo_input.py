@@ -1,4 +1,4 @@
-"""What comes in from servos and sensors: positions, telemetry, attitude, and the faults that they tell of."""
+"""What comes in from servos and sensors: positions, telemetry, contacts, attitude, and the faults that they show."""
 
 from __future__ import annotations
 
@@ -28,9 +28,9 @@ if TYPE_CHECKING:
 
 __all__ = ["ServoInput"]
 
-# How much longer servos may be silent on a computer whose ticks begin later than usual, per lateness [s].
+# How much longer servos may be silent per second by which ticks begin later than usual, and the usual lateness [s].
 _GRACE, _USUAL = 3.0, 0.005
-# Time between two requests to a servo, at least [s], and as a share of a tick in which it is asked early or late.
+# Time between two requests to a servo: at least [s], and in ticks, as it is asked early in some and late in others.
 _INTERVAL, _VARYING = 0.03, 1.3
 
 
@@ -57,7 +57,7 @@ class ServoInput:
     telemetry : TelemetryMonitor
         What servos reported last.
     complete : bool
-        Whether everybody who was asked in the last tick has answered.
+        Whether all servos that were asked in the last tick have answered.
     notes : list of str
         What is no longer measured, a line each.
     """
@@ -98,7 +98,7 @@ class ServoInput:
         return self._reader.all_positions()
 
     def forget_motion(self) -> None:
-        """Begin anew with comparing motion, after a pause."""
+        """Restart the comparison of motion with commands, after a pause."""
         self._motion.forget()
 
     def measure(
@@ -115,7 +115,7 @@ class ServoInput:
         begun, writing : float
             When it began, and how long commands took on the wire [s].
         late : float
-            How late ticks began of late [s].
+            How late recent ticks began [s].
 
         Raises
         ------
@@ -134,7 +134,7 @@ class ServoInput:
         if found is None and self._motion.doubtful.any():
             found = self._judged(reader.again(self._motion.doubtful)) or self._followed(sent, left)
         reader.suspect(self._motion.suspicion)
-        # A line in doubt is slow: whether it recovers is more urgent.
+        # While answers are missing the line is slow, and whether it recovers is more urgent than telemetry.
         if found is None and self.complete and not first:
             found = self._judged(reader.telemetry(dt, begun=begun - self.seconds))
         # Last, so that contacts are fresh.
@@ -146,7 +146,7 @@ class ServoInput:
         return found
 
     def _judged(self, readings: Iterable[Reading]) -> ServoFault | None:
-        """Take note of who answered and what was told, until the first fault."""
+        """Pass readings to the monitors until the first fault, and return it."""
         for reading in readings:
             self.complete = self.complete and not reading.errors
             fault = self._answers.answered(
@@ -195,7 +195,7 @@ class ServoInput:
         return 0.0 if self._feet is None else self._feet.seconds
 
     def readings(self, planned: Bool[np.ndarray, "legs"]) -> SensorReadings:
-        """Return the last values of all channels of which every joint was measured.
+        """Return the last values of all channels that are known: of joints, those for which every joint was measured.
 
         Parameters
         ----------

@@ -1,4 +1,4 @@
-"""Whose telemetry is read in a tick: all servos in turn, those with an alarm or suspected at once."""
+"""Chooses the servos whose telemetry is read in a tick: all in turn, but at once those with an alarm or suspected."""
 
 from __future__ import annotations
 
@@ -13,13 +13,14 @@ from tarsus.hardware.transport.clock import Clock
 
 __all__ = ["TelemetryTurn"]
 
-# Within this time the telemetry of each servo is read, where the wire carries it [s].
+# The telemetry of every servo is read once within this time, where the wire carries it [s].
 _TELEMETRY_TIME = 0.08
-# How much of a measured duration is believed at once.
+# Weight of a new measurement in the running mean of the duration.
 _NEW = 0.2
-# Where each value takes a request, temperatures are read: the voltage, that of all servos, after so many of them.
+# Where each value takes a request: the value read from each servo, the value that all servos share, and how many
+# readings of the first come before one of the second.
 _EACH, _SHARED, _SELDOM = "temperature", "voltage", 60
-# How many suspects tell more than their turn at most, and which share of a tick may be taken for what is not its turn.
+# How many suspected servos are asked out of turn, and the share of a tick that this may take beyond what is left of it.
 _SUSPECTS, _SPARE = 2, 0.05
 
 
@@ -42,12 +43,12 @@ class TelemetryTurn:
     """
 
     def __init__(self, bus: Bus, numbers: tuple[int, ...], clock: Clock) -> None:
-        # Those first that were not asked for longest.
+        # Waiting servos are in the order in which they were last asked, the longest ago first.
         self._bus, self._clock, self._waiting = bus, clock, list(numbers)
         self._separate = bus if isinstance(bus, SeparateTelemetry) else None
         self.separate = self._separate is not None
         every, one = bus.timing(numbers).telemetry, bus.timing(numbers[:1]).telemetry
-        # Boards measure the same for all of their channels.
+        # A board measures one value for all of its channels.
         self._together = len(numbers) > 1 and every == one
         parts = len(bus.capabilities.telemetry) if self._separate is not None else 1
         self._seconds = every / len(numbers) / parts
@@ -56,18 +57,18 @@ class TelemetryTurn:
         self._since_shared, self._most = 0, 1
 
     def alarmed(self, alarms: Mapping[int, tuple[str, ...]]) -> None:
-        """Take note of alarms that came with positions; what a servo has reported before is known.
+        """Take note of alarms that came with positions; only a servo whose alarms changed is asked out of turn.
 
         Parameters
         ----------
         alarms : mapping of int to tuple of str
-            What servos complain of, by id.
+            Names of the alarms, by id.
         """
         self._urgent += [number for number, names in alarms.items() if names != self._alarms.get(number)]
         self._alarms = dict(alarms)
 
     def slower(self, seconds: float) -> None:
-        """Take note of how much longer each request takes than on the wire.
+        """Take note of how much longer each request takes than its time on the wire.
 
         Parameters
         ----------
@@ -78,12 +79,12 @@ class TelemetryTurn:
             self._seconds += seconds
 
     def suspect(self, numbers: Iterable[int]) -> None:
-        """Let the first of some servos come first, where telemetry is slow.
+        """Ask the first few of some servos out of turn, where each value takes a request.
 
         Parameters
         ----------
         numbers : iterable of int
-            The servos.
+            The servos, the most suspected first.
         """
         if self._separate is not None:
             self._urgent += itertools.islice(numbers, _SUSPECTS)
@@ -91,7 +92,7 @@ class TelemetryTurn:
     def read(
         self, dt: float, *, left: float, beside: Collection[int] = ()
     ) -> Iterator[tuple[tuple[int, ...], Answers[Telemetry]]]:
-        """Read as many servos as are needed in a tick and fit into what is left of it; yield them and what they tell.
+        """Read as many servos as are due in a tick and fit into the rest of it; yield them and their telemetry.
 
         Parameters
         ----------
@@ -100,7 +101,7 @@ class TelemetryTurn:
         left : float
             How much is left of it [s].
         beside : collection of int
-            Whose position was read in this tick: where each value takes a request, the others come first.
+            Servos whose position is read in this tick: where each value takes a request, the others come first.
 
         Raises
         ------
@@ -125,7 +126,7 @@ class TelemetryTurn:
             return tuple(self._waiting)
         wanted = math.ceil(len(self._waiting) * min(dt / _TELEMETRY_TIME, 1.0))
         count = max(1, min(wanted, int(left / self._seconds)))
-        # So each servo is asked for something in each tick, where the wire carries that.
+        # With the others first, each servo is asked for something in each tick, where the wire carries that.
         order = sorted(self._waiting, key=lambda number: number in beside) if self.separate else self._waiting
         chosen = tuple(dict.fromkeys((*self._urgent, *order[:count])))
         if self.separate:
