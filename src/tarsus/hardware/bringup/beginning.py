@@ -1,4 +1,4 @@
-"""The beginning of a bring-up: a calibration that was begun before, or a new one for the servos that there are."""
+"""The beginning of a bring-up: a calibration that was begun before, or a new one for the chosen servos."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The servos under bring-up: little and slow motions of one servo, with little torque."""
+"""The servos under bring-up: small, slow motions of one servo at a time, with little torque."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from tarsus.hardware.transport.clock import Clock
 
 __all__ = ["Bench"]
 
-# How far and how fast a servo moves to be seen [rad, rad/s], with which share of its torque.
+# How far a servo moves to be seen [rad], how fast it moves in any case [rad/s], and with which share of its torque.
 _WIGGLE, _SPEED, _TORQUE = math.radians(8), math.radians(30), 0.35
 _TICK = 0.02
 
@@ -25,7 +25,7 @@ class Bench:
     bus : Bus
         The bus.
     calibration, blank : Calibration
-        The calibration as far as it is known; the one in which nothing is: its limits are those of the servos.
+        The calibration as far as it is known, and a new one, whose limits are those of the servos.
     clock : Clock
         The clock.
     """
@@ -39,7 +39,7 @@ class Bench:
                 bus.name, bus.port, expected="scale and limits of the servos", received="none", remedy="Add them."
             )
         self._scale, self._limits = joint.scale, limits
-        # Where each servo was told to go, and its range: one that is beyond the limits is not sent there at once.
+        # Last command and range of each servo: the range includes its start, so that it never jumps to the limits.
         self._goals: dict[int, float] = {}
         self._ranges: dict[int, tuple[float, float]] = {}
 
@@ -49,7 +49,7 @@ class Bench:
         return self.bus.capabilities.positions
 
     def position(self, number: int) -> float:
-        """Return the position of a servo: measured, or the last one that it was told [us or ticks].
+        """Return the position of a servo: measured, or else its last command, or mid-travel without one [us or ticks].
 
         Parameters
         ----------
@@ -66,7 +66,7 @@ class Bench:
         return self._goals.get(number, sum(self._limits) / 2)
 
     def knows(self, number: int) -> bool:
-        """Return whether a servo had a pulse, so that it holds where it is with the same one.
+        """Return whether the last pulse of a servo is known, with which it holds where it is.
 
         Parameters
         ----------
@@ -76,7 +76,7 @@ class Bench:
         return number in self._goals
 
     def expect(self, number: int, pulse: float) -> None:
-        """Take a servo to be where a pulse would bring it.
+        """Assume that a servo is where a pulse would bring it.
 
         Parameters
         ----------
@@ -128,7 +128,7 @@ class Bench:
     def wiggle(self, number: int) -> int:
         """Move a servo by 8 deg and back, then release it; return the sign of the first motion.
 
-        It is that to a greater command, but at the end of the servo's travel.
+        The first motion is to a greater command, except near the upper end of the servo's travel.
 
         Parameters
         ----------

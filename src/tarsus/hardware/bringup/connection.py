@@ -17,10 +17,10 @@ from tarsus.hardware.transport.clock import Clock
 __all__ = ["Connection", "Opener", "find_servos"]
 
 Opener: TypeAlias = Callable[[BusSettings], Bus]
-"""Opens the bus of settings."""
+"""Opens the bus that settings describe."""
 
 _Result = TypeVar("_Result")
-# Ids beyond those that are needed, as makers deliver servos with others.
+# How many more ids than needed are searched, as servos may come with other ids than expected.
 _SPARE = 12
 _TOPIC = Topic(title="Port and servos")
 
@@ -61,7 +61,7 @@ class Connection:
                 if self._bench is None:
                     self._bench = self._connect()
                     if not self._bench.measures:
-                        # Pulses that a board still sends would hold servos which nobody knows yet.
+                        # Pulses that a board still sends would hold servos that are not identified yet.
                         self._bench.release(None)
                 return step(self._bench)
             except PortError as error:
@@ -90,7 +90,7 @@ class Connection:
         self._boards.clear()
 
     def board(self, bench: Bench, settings: BusSettings) -> Bus:
-        """Return the bus of settings: that of the bench, or a second one, which is opened.
+        """Return the bus that settings describe: that of the bench, or another one, which is opened if need be.
 
         Parameters
         ----------
@@ -139,7 +139,7 @@ class Connection:
 
 
 def find_servos(progress: Progress, bench: Bench) -> tuple[int, ...]:
-    """Return the ids or channels of the servos; without enough of them, ask for the others.
+    """Return the ids or channels of the servos; where some are missing, ask whether to search again.
 
     Parameters
     ----------

@@ -15,7 +15,7 @@ class Left(Exception):  # noqa: N818 - no error: the user went away
 
 @dataclass(frozen=True, kw_only=True)
 class Topic:
-    """What a question is about, for those who show it in a picture.
+    """What a question is about, for a dialogue that shows it in a picture.
 
     Attributes
     ----------
@@ -24,8 +24,8 @@ class Topic:
     leg, joint : int or None
         Numbers of the leg and of the joint; None where it is about all or none.
     pose : str
-        What a hand, or steps, are to bring the leg or the joint to: the reference pose, or an end of its travel, or
-        that its foot is to be pressed; empty where nothing is to be moved.
+        Where the leg or the joint is to be brought, by hand or in small steps: to the reference pose or an end of its
+        travel; ``"pressed"`` where its foot is to be pressed, empty where nothing is to be moved.
     """
 
     title: str = ""
@@ -38,16 +38,16 @@ class Dialogue(Protocol):
     """Someone who answers."""
 
     def say(self, text: str) -> None:
-        """Tell something.
+        """Show a message.
 
         Parameters
         ----------
         text : str
-            What.
+            The message.
         """
 
     def choose(self, question: str, options: Mapping[str, str], *, topic: Topic) -> str:
-        """Ask, and return the key of an option; raise `Left` where whoever answers goes away.
+        """Ask a question, and return the key of the chosen option; raise `Left` where whoever answers goes away.
 
         Parameters
         ----------

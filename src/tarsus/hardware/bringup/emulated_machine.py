@@ -1,4 +1,4 @@
-"""A machine to try a bring-up on: emulated servos with ids, directions and zeros mixed up, hands that hold legs."""
+"""A machine to try a bring-up on: emulated servos with mixed-up ids, directions and zeros, and hands that hold legs."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 
 __all__ = ["EmulatedMachine"]
 
-# How far zeros are from the middle, and joints from the reference pose at first [rad].
+# Greatest offset of zeros from their nominal values, and of joints from the reference pose at first [rad].
 _OFF, _AWAY = math.radians(5), math.radians(10)
 # How near to its limits a hand brings a joint [rad].
 _NEAR = math.radians(5)
@@ -150,7 +150,7 @@ def _mixed_up(calibration: Calibration) -> Calibration:
     count, legs = calibration.buses[0].properties.inputs, calibration.robot.legs
     if count < legs:
         return calibration
-    # Of a Maestro the last channels, as the first ones are the servos'.
+    # On a Maestro the switches take the last channels, as the servos have the first ones.
     first = count - legs if calibration.buses[0].kind == "maestro" else 0
     inputs = tuple(int(number) for number in random.permutation(range(first, first + legs)))
     switches = FootSwitches(bus=calibration.buses[0].name, inputs=inputs, closed=bool(random.integers(2)))

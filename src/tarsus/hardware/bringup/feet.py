@@ -1,4 +1,4 @@
-"""Which input of a board is whose foot switch, and what a foot on the ground does to it: each is pressed by hand."""
+"""Finds which input of a board belongs to which foot, and its level on the ground: each foot is pressed by hand."""
 
 from __future__ import annotations
 
@@ -17,11 +17,11 @@ from tarsus.hardware.calibration.parts import BusSettings, FootSwitches
 __all__ = ["board_of_inputs", "find_foot_switches"]
 
 _TITLE = "Foot switches"
-# Levels are the median of several.
+# A level is the median of this many readings.
 _READINGS = 5
-# How far the level of a foot must change, and how much less all others, as shares of the highest level.
+# Least change of a pressed foot's level, as a share of the highest level; greatest other change, as a share of it.
 _CHANGE, _OTHERS = 0.1, 0.5
-# A switch is nearer to the ends than that; between them it is a sensor of force, whose thresholds are kept.
+# The levels of a switch are below the first and above the second share; otherwise it is a force sensor.
 _LOW, _HIGH = 0.25, 0.75
 # Hysteresis as a share of the smallest change, and at most [V].
 _SHARE, _MOST = 0.3, 0.2
@@ -45,7 +45,7 @@ def board_of_inputs(progress: Progress) -> BusSettings | None:
 
 
 def find_foot_switches(progress: Progress, connection: Connection, bench: Bench, *, settings: BusSettings) -> None:
-    """Ask to press one foot after the other, and keep whose input changes, and which way.
+    """Ask to press one foot after the other, and keep which input changes, and which way.
 
     Feet whose input is known are not asked for again.
 
@@ -130,7 +130,7 @@ def _keep(progress: Progress, settings: BusSettings, leg: int, number: int, *, f
 
 
 def _with_threshold(switches: FootSwitches, leg: int, highest: float, *, free: float, pressed: float) -> FootSwitches:
-    """Return the switches with a threshold for a leg where it has a sensor of force."""
+    """Return the switches with a threshold for a leg where it has a force sensor."""
     low, high = sorted((free, pressed))
     if not switches.thresholds and low < _LOW and high > _HIGH:
         return switches
@@ -141,7 +141,7 @@ def _with_threshold(switches: FootSwitches, leg: int, highest: float, *, free: f
 
 
 def _levels(progress: Progress, board: InputBoard, settings: BusSettings) -> Levels:
-    """Return the levels of all inputs that can be read, and are no channels of servos."""
+    """Return the levels of all inputs that can be read and are not channels of servos."""
     joints = progress.calibration.joints
     servos = {joint.number for row in joints for joint in row if joint.bus == settings.name}
     # Only a Maestro has channels that are inputs as well.
@@ -155,7 +155,7 @@ def _levels(progress: Progress, board: InputBoard, settings: BusSettings) -> Lev
         except PortError:
             raise
         except BusError:
-            # This one is no input, or the board has fewer.
+            # This channel is no input, or the board has fewer inputs.
             continue
     return found
 

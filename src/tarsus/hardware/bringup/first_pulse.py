@@ -1,4 +1,4 @@
-"""The first pulse of a servo that does not tell where it is: it goes there at once, so that whoever looks is asked."""
+"""The first pulse of a servo that does not tell where it is: the servo jumps to it, so the user is asked before."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ __all__ = ["send_first_pulse"]
 def send_first_pulse(progress: Progress, bench: Bench, *, number: int, topic: Topic, skippable: bool = True) -> bool:
     """Ask before a servo gets its first pulse, and return whether it may have it.
 
-    It is where its servo probably is: in the reference pose where that was set before, else in mid-travel.
+    The pulse is where the servo probably is: in the reference pose where its joint was set before, else in mid-travel.
     Servos that measure their position hold where they are, and need no question; neither do those that had a pulse.
 
     Parameters
@@ -27,7 +27,7 @@ def send_first_pulse(progress: Progress, bench: Bench, *, number: int, topic: To
     topic : Topic
         What the question is about.
     skippable : bool
-        Whether the answer may be that it gets none now.
+        Whether the answer may be to skip it.
     """
     if bench.measures or bench.knows(number):
         return True

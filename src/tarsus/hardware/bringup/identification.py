@@ -1,4 +1,4 @@
-"""Which servo is which joint, and which way it turns: one moves a little, and whoever looks says what moved."""
+"""Finds which servo is which joint, and which way it turns: it moves a little, and whoever looks says what moved."""
 
 from __future__ import annotations
 

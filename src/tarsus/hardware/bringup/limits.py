@@ -1,4 +1,4 @@
-"""Limits of the joints of a leg, from their ends of travel by hand or by small steps."""
+"""Limits of the joints of a leg, from the ends of travel to which they are moved by hand or by small steps."""
 
 from __future__ import annotations
 

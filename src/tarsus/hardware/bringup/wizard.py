@@ -32,7 +32,7 @@ class BringUp:
     dialogue : Dialogue
         Who answers.
     open_bus : callable
-        Opens the bus of settings.
+        Opens the bus that settings describe.
     ports : callable
         Returns the names of the ports that there are.
     clock : Clock, optional

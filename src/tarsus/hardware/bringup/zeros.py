@@ -43,7 +43,7 @@ def set_zeros(progress: Progress, bench: Bench, *, leg: int) -> None:
 
 
 def step_to(progress: Progress, bench: Bench, *, number: int, what: str, topic: Topic) -> None:
-    """Move a servo by small steps until whoever looks says so.
+    """Move a servo by small steps until whoever looks says that it is there.
 
     Parameters
     ----------
@@ -68,7 +68,7 @@ def step_to(progress: Progress, bench: Bench, *, number: int, what: str, topic: 
 
 
 def _held(progress: Progress, bench: Bench, leg: int, reference: Float[np.ndarray, "3"]) -> bool:
-    """Ask for the reference pose of a leg, and return whether its zeros can be."""
+    """Ask for the reference pose of a leg, and return whether all its zeros are plausible and kept."""
     ask, name = progress.ask, progress.calibration.robot.leg_names[leg]
     at: dict[str, Any] = {"title": "Zeros", "leg": leg, "pose": "reference"}
     if bench.measures:
@@ -89,6 +89,6 @@ def _held(progress: Progress, bench: Bench, leg: int, reference: Float[np.ndarra
 
 
 def _zero(progress: Progress, leg: int, j: int, position: float, angle: float) -> bool:
-    """Set the zero of a joint that is at an angle; return whether it can be."""
+    """Set the zero of a joint that is at an angle, unless it contradicts what is known; return whether it was set."""
     slope = progress.calibration.joints[leg][j].slope
     return progress.keep_joint(leg, j, zero=round(position - slope * angle, 1))
