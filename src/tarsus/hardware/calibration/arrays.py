@@ -1,4 +1,4 @@
-"""What follows from the values of a calibration: arrays over joints, and joint angles as commands."""
+"""What follows from the values of a calibration: arrays over joints, and conversions between angles and commands."""
 
 from __future__ import annotations
 
@@ -53,7 +53,7 @@ class CalibrationArrays(CalibrationFields):
         return f"{self.robot.leg_names[leg]} {JOINTS[joint]}"
 
     def require_complete(self) -> None:
-        """Refuse a calibration of which something is not known yet.
+        """Raise an error where something in the calibration is not known yet.
 
         Raises
         ------
@@ -88,7 +88,7 @@ class CalibrationArrays(CalibrationFields):
 
     @cached_property
     def command_limits(self) -> Float[np.ndarray, "legs 3 2"]:
-        """Least and greatest command of each joint, those of `limits` ``(legs, 3, 2)`` [us or ticks]."""
+        """Least and greatest command of each joint, which correspond to `limits` ``(legs, 3, 2)`` [us or ticks]."""
         ends = np.sort(self.zeros[..., None] + self.slopes[..., None] * self.limits, axis=-1)
         given = np.array([[joint.limits for joint in row] for row in self.joints])
         # Converted to angles and back, a limit may differ by its rounding.

@@ -15,7 +15,7 @@ from tarsus.robot.units import per_radian, to_decimal
 
 __all__ = ["new_calibration", "nominal_calibration"]
 
-# Hobby servos take 500 to 2500 us over their whole travel, those with an unknown travel turn by 180 deg.
+# Hobby servos take 500 to 2500 us over their whole travel [us]; an unknown travel is taken to be 180 deg [rad].
 _PULSES, _USUAL_TRAVEL = (500.0, 2500.0), math.pi
 
 
@@ -50,10 +50,10 @@ def new_calibration(
 
 
 def nominal_calibration(robot: Robot, robot_file: str, *, kind: str | None = None, port: str = "") -> Calibration:
-    """Return a calibration of a machine as it would be built by the book: for emulated servos.
+    """Return the calibration of a machine that is built as planned, for emulated servos.
 
-    Servos are numbered leg by leg, their middle is the middle of the joint's limits, and those of the right legs turn
-    the other way.
+    Servos are numbered leg by leg, the middle of their travel is the middle of the joint's limits, and those of the
+    right legs turn the other way.
 
     Parameters
     ----------
@@ -77,7 +77,7 @@ def nominal_calibration(robot: Robot, robot_file: str, *, kind: str | None = Non
         side = 1 if np.sin(float(np.asarray(robot.mount_yaw)[leg])) >= 0 else -1
         joints = []
         for j, joint in enumerate(row):
-            # Makers number servos from 1, channels from 0.
+            # Ids count from 1, channels from 0.
             number = 3 * leg + j + (blank.kind(leg, j).unit == "ticks")
             assert joint.scale is not None
             assert joint.limits is not None
@@ -102,6 +102,6 @@ def _joint(kind: BusCommands, bus: str, servo: Servo | None) -> JointCalibration
     steps, degrees = kind.steps or (4096, 360.0)
     per_degree = to_decimal(round(steps / degrees, 5))
     travel = math.degrees(servo.travel) if servo is not None and servo.travel else degrees
-    # A servo that turns less than its bus can say is used about the middle.
+    # A servo whose travel is less than the range of its bus uses the middle of that range.
     unused = max(0, math.ceil((steps - 1 - travel * steps / degrees) / 2))
     return JointCalibration(bus=bus, scale=per_radian(per_degree), limits=(float(unused), float(steps - 1 - unused)))

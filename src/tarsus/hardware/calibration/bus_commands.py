@@ -92,7 +92,7 @@ BUS_COMMANDS: Mapping[str, BusCommands] = MappingProxyType(
 )
 """Kinds of servo buses, by name."""
 
-# By the beginning of the model's name and of its bus's: of several the first.
+# Kinds by the beginnings of a servo's name and of its bus's name; the first that fits counts.
 _OF_SERVOS = {
     ("AX-", "Dynamixel"): "dynamixel-ax",
     ("", "Dynamixel 2.0"): "dynamixel-x",

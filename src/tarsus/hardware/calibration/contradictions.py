@@ -1,4 +1,4 @@
-"""What contradicts itself, the bus or the robot in a calibration."""
+"""Contradictions in a calibration: within itself, with the bus, or with the robot."""
 
 from __future__ import annotations
 
@@ -15,15 +15,15 @@ from tarsus.robot.robot import JOINTS, Robot
 
 __all__ = ["Contradiction", "angle_range", "contradictions"]
 
-# Pulse widths for a degree are round numbers, so that the range of a servo is met to 1 % only.
+# Pulse widths per degree are rounded numbers, so that the travel of a servo is met to 1 % only.
 _TRAVEL_TOLERANCE = 1.01
 _ROUNDING = 1e-9
-# Of each PCA9685.
+# Channels of each PCA9685.
 _CHANNELS = 16
 
 
 class Contradiction(NamedTuple):
-    """Something that can't be.
+    """A contradiction in a calibration.
 
     Attributes
     ----------
@@ -44,7 +44,7 @@ def contradictions(
     foot_switches: FootSwitches | None = None,
     supply: SupplySettings | None = None,
 ) -> list[Contradiction]:
-    """Return everything that can't be.
+    """Return all contradictions in the values of a calibration.
 
     Parameters
     ----------

@@ -90,12 +90,12 @@ def place_in_file(place: Place, entries: dict[int, int]) -> Place:
     """
     if place[0] != "legs" or not isinstance(place[1], int):
         return place
-    # A leg without an entry is missing among all of them.
+    # For a leg without an entry, the place is the whole list of legs.
     return ("legs", entries[place[1]], *place[2:]) if place[1] in entries else ("legs",)
 
 
 def _only_bus(buses: list[BusEntry], given: str | None, fits: Callable[[BusCommands], bool]) -> str:
-    """Return the name of the bus that is given, or that of the only one that there is, or that fits."""
+    """Return the given name of a bus, or else the name of the only bus, or of the only one that fits."""
     if given is not None:
         return given
     fitting = [bus for bus in buses if bus.kind in BUS_COMMANDS and fits(BUS_COMMANDS[bus.kind])]

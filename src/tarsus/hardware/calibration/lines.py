@@ -11,7 +11,7 @@ Place: TypeAlias = tuple[str | int, ...]
 
 _PART = r"""(?:[\w-]+|"[^"]*"|'[^']*')"""
 _PATH = rf"{_PART}(?:\s*\.\s*{_PART})*"
-# What brackets do not count in, and what begins a text of several lines.
+# Strings and comments, in which brackets do not count; three quotes begin a string of several lines.
 _HIDDEN = re.compile(r"""\"{3}|'{3}|"(?:[^"\\]|\\.)*"|'[^']*'|#.*""")
 
 
@@ -21,9 +21,9 @@ def key_lines(text: str) -> dict[Place, int]:
     Parameters
     ----------
     text : str
-        The text; what is no header and no key is passed over.
+        The text; lines that are neither a header nor a key are skipped.
     """
-    # The table of the file itself begins with it.
+    # The table of the whole file begins with its first line.
     found: dict[Place, int] = {(): 1}
     counts: dict[Place, int] = {}
     inside: Place = ()
@@ -74,14 +74,14 @@ def _resolved(parts: list[str], inside: Place, counts: dict[Place, int]) -> Plac
 
 
 def _note(found: dict[Place, int], place: Place, number: int) -> None:
-    """Take note of a line; tables that are only named on the way to another one begin there."""
+    """Take note of the line of a place; tables that are only named in its path begin there too."""
     for length in range(1, len(place)):
         found.setdefault(place[:length], number)
     found[place] = number
 
 
 def _open(line: str, brackets: int, quotes: str) -> tuple[int, str]:
-    """Return how many brackets are open after a line, and the quotes of a text that goes on."""
+    """Return how many brackets are open after a line, and the quotes of a string that goes on; empty without one."""
     if quotes:
         _, closed, line = line.partition(quotes)
         if not closed:

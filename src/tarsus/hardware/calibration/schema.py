@@ -38,7 +38,7 @@ Volts: TypeAlias = Annotated[Decimal, Number(0.1, 100, "V")]
 
 @dataclass(frozen=True)
 class Whole:
-    """A whole number from `low` to `high`, or one of `words` in its place."""
+    """A whole number from `low` to `high`; `what` describes it in messages."""
 
     low: int
     high: int
