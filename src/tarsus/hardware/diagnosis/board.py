@@ -15,7 +15,7 @@ __all__ = ["check_board"]
 
 
 def check_board(subject: Subject, bus: Bus) -> Iterator[Finding]:
-    """Yield what a board that only sends pulses tells.
+    """Yield the findings about a board that only sends pulses.
 
     Parameters
     ----------
@@ -49,7 +49,7 @@ def check_board(subject: Subject, bus: Bus) -> Iterator[Finding]:
 
 
 def _switches(subject: Subject, bus: Bus) -> Iterator[Finding]:
-    """Yield which foot switches are closed."""
+    """Yield the levels of the foot switches."""
     switches = subject.calibration.foot_switches
     if switches is None or switches.bus != subject.settings.name or not isinstance(bus, InputBoard):
         return

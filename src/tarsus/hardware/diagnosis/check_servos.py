@@ -1,4 +1,4 @@
-"""The decision tree: port, servos, supply, state, motion; it ends where what follows would mean nothing."""
+"""The decision tree: port, servos, supply, state, motion; it ends where further answers would mean nothing."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ def check_servos(
     move : bool
         Whether each joint is moved by 4 deg and back, one at a time.
     open_port : callable, optional
-        Opens the bus of settings at a rate; `open_bus` where left out.
+        Opens the bus that settings describe, at a baud rate; `open_bus` where left out.
     clock : Clock, optional
         The machine's.
     """

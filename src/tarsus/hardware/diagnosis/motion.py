@@ -11,7 +11,7 @@ from tarsus.hardware.diagnosis.subject import Subject
 
 __all__ = ["check_motion"]
 
-# A small motion: how far, how much of it must be seen, how long it takes [rad, s].
+# A small motion: its angle [rad], the share of it that must be measured, and its duration [s].
 _STEP, _SEEN, _LASTS = math.radians(4), 0.5, 0.6
 _TORQUE = 0.4
 # An answer may be lost.
@@ -19,7 +19,7 @@ _TRIES = 3
 
 
 def check_motion(subject: Subject, bus: Bus, alive: Sequence[int]) -> Finding:
-    """Move one joint after the other by a little, and back; return which do not.
+    """Move one joint after the other by a little, and back; return which of them do not move.
 
     Parameters
     ----------
@@ -49,7 +49,7 @@ def check_motion(subject: Subject, bus: Bus, alive: Sequence[int]) -> Finding:
 
 
 def _moved(subject: Subject, bus: Bus, number: int) -> float | None:
-    """Return how far a joint moves that is told to move by a small step [rad]; None if it does not answer."""
+    """Return how far a joint moves when it is told to move by a small step [rad]; None if it does not answer."""
     place = subject.joints.joint(subject.settings.name, number)
     slope = float(subject.calibration.slopes[place])
     low, high = subject.calibration.command_limits[place]

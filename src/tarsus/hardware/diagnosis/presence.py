@@ -13,12 +13,12 @@ from tarsus.hardware.diagnosis.subject import Subject
 
 __all__ = ["check_presence", "why_nobody_answers"]
 
-# Rates at which servos are found that were set to another one.
+# Baud rates that are tried where no servo answers at the rate of the calibration [bit/s].
 _RATES = (1_000_000, 57_600, 115_200, 500_000, 9_600, 38_400)
 
 
 def why_nobody_answers(subject: Subject, bus: Bus) -> Finding:
-    """Return why no servo answers at all; the bus is closed by it.
+    """Return why no servo answers at all; the bus may be closed afterwards.
 
     Parameters
     ----------
@@ -61,7 +61,7 @@ def _echoes(subject: Subject, bus: Bus) -> bool:
 
 
 def _other_rate(subject: Subject, bus: Bus) -> int | None:
-    """Return a rate at which a servo answers; None where there is none."""
+    """Close the bus, and return a common rate at which a servo answers; None where there is none."""
     bus.close()
     if bus_kind(subject.settings.kind).transport != "serial":
         return None
@@ -90,7 +90,7 @@ def check_presence(subject: Subject, bus: Bus, alive: Sequence[int], errors: tup
     bus : Bus
         The open bus.
     alive : sequence of int
-        Those that do.
+        The servos that do.
     errors : tuple of BusError
         Why the others do not.
     """

@@ -30,7 +30,7 @@ class Subject:
     settings : BusSettings
         Settings of the bus.
     open_port : callable
-        Opens the bus of settings at a rate.
+        Opens the bus that settings describe, at a baud rate.
     clock : Clock
         The clock.
     """

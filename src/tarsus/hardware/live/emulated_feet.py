@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 __all__ = ["EmulatedFeet"]
 
-# Gear play lifts feet of a rigid robot off the ground that touch it in an elastic one [m].
+# Feet no higher than this touch the ground: gear play lifts feet of a rigid robot, but not of an elastic one [m].
 _TOUCH = 0.004
 
 

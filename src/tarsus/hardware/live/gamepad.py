@@ -84,6 +84,6 @@ class Gamepad:
             elif kind == _BUTTON and value and number in _BUTTONS:
                 pressed.append(_BUTTONS[number])
         self._rest = self._rest[whole:]
-        # Sticks tell changes only: what they said last holds.
+        # Sticks report changes only, so that their last values hold.
         twist = (-self._axes[_LEFT_Y], -self._axes[_LEFT_X], -self._axes[_RIGHT_X])
         return [Input(twist=twist), *pressed]

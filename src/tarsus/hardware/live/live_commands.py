@@ -1,4 +1,4 @@
-"""Commands from someone who drives: with a deadman, so that the robot stops when nobody does."""
+"""Commands from someone who drives, with a deadman: the robot stops when nothing is heard any more."""
 
 from __future__ import annotations
 
@@ -48,7 +48,7 @@ class InputDevice(Protocol):
 
 
 class LiveCommands:
-    """A source of commands from an input device. Nothing heard for a time stops the robot: a deadman.
+    """A source of commands from an input device; a deadman stops the robot when nothing is heard for a time.
 
     Parameters
     ----------
