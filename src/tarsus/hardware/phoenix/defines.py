@@ -102,7 +102,7 @@ class Defines:
 def read_defines(text: str, *, where: str) -> Defines:
     """Return what a header defines; code and macros with arguments are passed over.
 
-    Conditions hold where their names are defined before; other conditions don't hold.
+    Conditions on whether a name is defined before are evaluated, and ``#if 1`` holds; other conditions don't hold.
 
     Parameters
     ----------
@@ -112,7 +112,7 @@ def read_defines(text: str, *, where: str) -> Defines:
         Its name in messages.
     """
     found: dict[str, _Define] = {}
-    # Whether each enclosing condition holds, and has held.
+    # For each enclosing condition: whether its present branch holds, and whether one of its branches has held.
     open_conditions: list[tuple[bool, bool]] = []
     without_comments = re.sub(r"/\*.*?\*/", lambda comment: "\n" * comment[0].count("\n"), text, flags=re.DOTALL)
     for number, line in enumerate(without_comments.splitlines(), 1):

@@ -52,7 +52,7 @@ class Driver(NamedTuple):
     baud : str
         Name of the constant with the bits per second; empty without.
     mirrors : bool
-        Whether it negates the angles of the right legs, beside what the header says.
+        Whether it negates the angles of the right legs, in addition to the inversions in the header.
     """
 
     kind: str
@@ -89,7 +89,7 @@ DRIVERS: Mapping[str, Driver] = MappingProxyType(
 """Servo drivers of the firmware."""
 
 
-# What a header defines for its driver; without, it is for an SSC-32.
+# Names that a header defines to choose its driver; without any, it is for an SSC-32.
 _FLAGS = {"USE_AX12_DRIVER": "ax12", "USE_MAESTRO": "maestro"}
 
 

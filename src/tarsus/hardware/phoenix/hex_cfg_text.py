@@ -16,7 +16,7 @@ from tarsus.robot.robot import JOINTS
 __all__ = ["hex_cfg_text"]
 
 _CODES = {name: code for code, name in LEGS.items()}
-# Rounding of the header's whole tenths of a degree and millimetres.
+# Rounding of the header's whole tenths of a degree [deg] and millimetres [m].
 _TENTH, _MILLIMETRE = 0.1, 1e-3
 _SCALE = 0.01
 
@@ -24,8 +24,8 @@ _SCALE = 0.01
 def hex_cfg_text(calibration: Calibration) -> str:
     """Return the text of a header: pins, limits, horn offsets, inversion, dimensions and start positions.
 
-    Angles are in tenths of a degree and lengths in whole millimetres there. What the firmware can't express stands in
-    comments: servo offsets of the coxa, and a scale that is not the driver's.
+    Angles are in tenths of a degree and lengths in whole millimetres there. What the firmware can't express is written
+    as comments: servo offsets of the coxa, and a scale that is not the driver's.
 
     Parameters
     ----------
@@ -69,7 +69,7 @@ def _driver(calibration: Calibration) -> Driver:
 
 
 def _flags(calibration: Calibration, driver: Driver) -> list[str]:
-    """Return what tells the driver, and the baud rate of a board."""
+    """Return the lines that choose the driver, and the baud rate of a board."""
     flag = {"ssc32": "USE_SSC32", "maestro": "USE_MAESTRO", "dynamixel-ax": "USE_AX12_DRIVER"}[driver.kind]
     usual = 115_200 if driver.kind == "maestro" else 38_400
     rate = [f"#define {driver.baud} {calibration.buses[0].baud or usual}"] if driver.baud else []

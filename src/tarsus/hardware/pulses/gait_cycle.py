@@ -47,7 +47,7 @@ def gait_cycle(motion: Motion, *, rate: float = _RATE) -> GaitCycle:
     motion : Motion
         A walk.
     rate : float
-        About how many frames per second [1/s].
+        Approximate number of frames per second [1/s].
 
     Raises
     ------

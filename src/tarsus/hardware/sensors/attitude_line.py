@@ -15,7 +15,7 @@ from tarsus.representation import represented
 
 __all__ = ["AttitudeLine"]
 
-# Longer than any line of three numbers: what has no end by then is no line.
+# Longer than any line of three numbers: of text without an end of line only this many bytes are kept.
 _LONGEST = 200
 _NUMBER = re.compile(rb"[-+]?\d+(?:\.\d*)?")
 _LARGEST = 360.0
@@ -79,7 +79,7 @@ class AttitudeLine:
 
 
 def _angles(line: bytes) -> tuple[float, float, float] | None:
-    """Return roll, pitch and yaw of a line [rad]; None where it is none."""
+    """Return roll, pitch and yaw of a line [rad]; None where it holds no attitude."""
     words = re.split(rb"[,;\s]+", line.strip())
     if len(words) != 3 or not all(_NUMBER.fullmatch(word) for word in words):
         return None

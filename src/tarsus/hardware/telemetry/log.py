@@ -38,7 +38,7 @@ _SCHEMA = {
 
 
 class TelemetryLog:
-    """A table (CSV) and an MCAP file of a run, for Foxglove; each tick is written at once.
+    """A table (CSV) and an MCAP file of a run, for Foxglove; each tick is written as it comes.
 
     Parameters
     ----------
@@ -50,7 +50,7 @@ class TelemetryLog:
     Attributes
     ----------
     problem : str
-        Why no more can be written, as on a full disk; empty where all was. The run goes on: no robot falls for that.
+        Why no more can be written, for example a full disk; empty where all was. The run goes on without the log.
 
     Raises
     ------
