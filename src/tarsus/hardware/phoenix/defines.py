@@ -73,7 +73,7 @@ class Defines:
             if depth > _DEEPEST:
                 raise ValueError
             with warnings.catch_warnings():
-                # Python warns of what it can just about read, such as 1or; here it is wrong, or another's.
+                # Python warns of text that it only just accepts, such as "1or 2"; the user cannot do anything about that.
                 warnings.simplefilter("ignore")
                 parsed = ast.parse(text.strip() or "?", mode="eval")
             return self._value(parsed.body, depth)

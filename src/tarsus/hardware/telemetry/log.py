@@ -1,4 +1,4 @@
-"""Writes what a servo plant does, tick by tick, so that the log is complete whatever ends the run."""
+"""Log of a servo plant, written tick by tick: whatever ends the run, at most the rows still buffered are lost."""
 
 from __future__ import annotations
 
