@@ -41,7 +41,7 @@ from tarsus.scenario.wording import command_text
 __all__ = ["ScenarioCommands", "leg_number"]
 
 _NO_TWIST = (0.0, 0.0, 0.0)
-# Two times this near to each other are the same [s].
+# Times that differ by no more than this count as the same [s].
 _SAME_TIME = 1e-9
 _STATES: dict[type[TimedCommand], RobotState] = {
     StandUp: RobotState.STANDING,
@@ -51,14 +51,14 @@ _STATES: dict[type[TimedCommand], RobotState] = {
 
 
 def leg_number(robot: Robot, name: str) -> int | None:
-    """Return the number of the leg of that name or short name; None where there is none.
+    """Return the number of the leg with a name or short name; None where there is none.
 
     Parameters
     ----------
     robot : Robot
         A single robot.
     name : str
-        In capitals or not.
+        Full or short name of the leg; upper and lower case are the same.
     """
     for names in (robot.leg_codes, robot.leg_names):
         lower = [each.lower() for each in names]
@@ -68,7 +68,7 @@ def leg_number(robot: Robot, name: str) -> int | None:
 
 
 class ScenarioCommands:
-    """Gives the command of every tick; changes of state wait in a queue until the one before them has ended.
+    """Gives the command for every tick; a change of state waits in a queue until the previous one has ended.
 
     Parameters
     ----------
@@ -77,7 +77,8 @@ class ScenarioCommands:
     robot : Robot
         A single robot.
     environment : Environment, optional
-        What the commands ``ground``, ``tilt`` and ``force`` change.
+        Deviations from flat ground that an ideal plant measures; the commands ``ground``, ``tilt`` and ``force`` set
+        them.
     """
 
     def __init__(self, scenario: Scenario, robot: Robot, environment: Environment | None) -> None:
@@ -86,26 +87,27 @@ class ScenarioCommands:
         self._queue: deque[TimedCommand] = deque()
         self._twist = _NO_TWIST
         self._held: dict[str, Any] = {}
-        # Legs out of the gait, each with a target or a velocity; None for one that is put back into it.
+        # Target or velocity of each leg that was taken out of the gait; None for a leg that was put back into it.
         self._feet: dict[int, FootTarget | FootVelocity | None] = {}
         self._state: RobotState | None = None
-        # Whether the twist, and which legs, were commanded while the robot is to lie: the controller says why not.
+        # Whether a twist, and for which legs a foot, was commanded while the robot is to lie or fold: such commands are
+        # passed on, so that the controller reports why it does not carry them out.
         self._asks, self._asked = False, set[int]()
         self._command = Command()
 
-    # The source of a run.
+    # The interface of a source of commands.
 
     def command(self, time: float, output: ControlOutput, note: Callable[[str, str], None]) -> Command:
-        """Return the command for the next tick, with everything that holds.
+        """Return the command for the next tick: all scenario commands that are in force.
 
         Parameters
         ----------
         time : float
             The time at the end of the last tick [s].
         output : ControlOutput
-            What the controller gave last.
+            The last output of the controller.
         note : callable
-            Takes the kind and the text of an event.
+            Records an event, given its kind and text.
         """
         changed = False
         while self._left and self._left[0].at <= time + _SAME_TIME:
@@ -132,7 +134,7 @@ class ScenarioCommands:
         time : float
             The time at the end of the last tick [s].
         output : ControlOutput
-            What the controller gave last.
+            The last output of the controller.
         """
         if self._scenario.duration is not None:
             return time >= self._scenario.duration - _SAME_TIME
@@ -142,7 +144,7 @@ class ScenarioCommands:
         walks = output.state.upright and any(self._twist)
         return (not self._queue and (walks or output.at_rest)) or time >= last + LONGEST
 
-    # What holds.
+    # Commands in force.
 
     def _take(self, command: TimedCommand) -> None:
         if isinstance(command, StandUp | Sit | Fold | PowerOff):
@@ -176,7 +178,7 @@ class ScenarioCommands:
         return self._state in (None, RobotState.STANDING)
 
     def _merged(self) -> Command:
-        """Return what is commanded now; what was commanded before the robot was to lie ends then."""
+        """Return the command in force; twist and feet commanded before the robot was to lie or fold no longer count."""
         stands = self._stands
         feet = {leg: foot if stands or leg in self._asked else None for leg, foot in self._feet.items()}
         velocities = {n: (f.vx, f.vy, f.vz) for n, f in feet.items() if isinstance(f, FootVelocity)}
@@ -205,7 +207,7 @@ class ScenarioCommands:
         return output.state is RobotState.FOLDED
 
     def _handled(self, command: TimedCommand, output: ControlOutput, note: Callable[[str, str], None]) -> bool:
-        """Return whether a change of state has ended, was refused, or is a power-off that is now worked out."""
+        """Return whether a change of state is finished: reached, refused, or a power-off that was reported."""
         if isinstance(command, PowerOff):
             return self._powered_off(output, note)
         if self._is_met(command, output):
@@ -218,7 +220,7 @@ class ScenarioCommands:
         return True
 
     def _powered_off(self, output: ControlOutput, note: Callable[[str, str], None]) -> bool:
-        """Say what falls when the joints are released; the robot must rest on its belly."""
+        """Report what falls when the joints are released, once the robot rests on its belly; return whether done."""
         if output.state.upright:
             note("refused", "power_off: the robot stands; it must lie on its belly before the joints are released")
             return True

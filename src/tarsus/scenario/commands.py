@@ -63,7 +63,7 @@ class GaitChange(TimedCommand):
 
 @dataclass(frozen=True, kw_only=True)
 class _SixWays(TimedCommand):
-    """The six coordinates of a body pose [m], [rad]."""
+    """Base of commands with the six coordinates of a body pose [m], [rad]."""
 
     x: float = quantity("mm", "forward", low=-_WIDE, high=_WIDE)
     y: float = quantity("mm", "to the left", low=-_WIDE, high=_WIDE)

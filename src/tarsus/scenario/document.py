@@ -119,7 +119,7 @@ def _entry(command: TimedCommand) -> dict[str, Any]:
 
 
 def plain(value: Any) -> Any:
-    """Return a document with its decimals as ints and floats; those that no double represents stay decimals."""
+    """Return a document with its decimals as ints and floats; a decimal that no float reproduces stays a decimal."""
     if isinstance(value, dict):
         return {key: plain(item) for key, item in value.items()}
     if isinstance(value, list):

@@ -26,7 +26,7 @@ def require_drivable(scenario: Scenario, robot: Robot) -> None:
     Raises
     ------
     InputError
-        If a command names a gait that does not fit the robot, or sets a force without compliant feet.
+        If a command names a gait that does not fit the robot, or sets a force that its feet can't comply with.
     UnknownNameError
         If a command names a leg that the robot does not have.
     """
@@ -47,7 +47,7 @@ def require_drivable(scenario: Scenario, robot: Robot) -> None:
 
 
 def _not_compliant(scenario: Scenario, robot: Robot) -> str:
-    """Return why no foot would comply with a force; empty where one would."""
+    """Return why the feet would not comply with a force; empty where they would."""
     if scenario.admittance is None:
         return (
             "the feet are not compliant; set in the scenario: "

@@ -22,9 +22,9 @@ class LegTable(NamedTuple):
     key : str
         The key.
     kind : type
-        The command for a leg's number, or list of numbers.
+        The command that the number, or the list of numbers, of a leg becomes.
     words : mapping of str to type
-        Words accepted in their place, and their commands.
+        Words accepted in place of numbers, and the commands that they become.
     """
 
     key: str
@@ -38,7 +38,7 @@ LEG_TABLES = (
     LegTable("ground_mm", Ground),
     LegTable("force_n", Force),
 )
-"""All keys of this kind."""
+"""All keys of an ``[[at]]`` whose value is a table of legs."""
 
 
 def commands_of_legs(table: Any, at: Decimal) -> Iterator[TimedCommand]:

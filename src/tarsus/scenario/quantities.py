@@ -16,7 +16,7 @@ __all__ = ["UNITS", "Quantity", "Unit", "quantity", "require_quantity"]
 
 
 class Unit(NamedTuple):
-    """A unit of files.
+    """A unit of numbers in scenario files.
 
     Attributes
     ----------
@@ -52,7 +52,7 @@ UNITS: Mapping[str, Unit] = MappingProxyType(
         "n_m": Unit("N/m", {"N/m": Decimal(1)}, float, to_decimal),
     }
 )
-"""The units that keys of a scenario file end in."""
+"""The units in which keys of a scenario file end; the key ``""`` is that of numbers without a unit."""
 
 
 @dataclasses.dataclass(frozen=True)
@@ -134,7 +134,7 @@ def require_quantity(what: str, value: object, wanted: Quantity) -> None:
     Raises
     ------
     InputError
-        If the value is another.
+        If the value is neither.
     """
     if isinstance(value, str) and value in wanted.words:
         return

@@ -45,12 +45,12 @@ def run_scenario(
     Raises
     ------
     InputError
-        If no robot is named, a command names a gait that does not fit it, a force is to be measured that nothing
-        responds to, or the plant can't simulate what a command asks for.
+        If no robot is named, a command names a gait that does not fit it or sets a force that its feet can't comply
+        with, or the plant can't simulate what a command asks for.
     UnknownNameError
         If a command names a leg that the robot does not have.
     UnreachableError
-        If the robot can't stand as the scenario starts.
+        If the robot can't stand in the stance of the scenario.
     """
     chosen = _robot(scenario, robot, plant)
     controller = scenario_controller(scenario, chosen, guard=guard)
@@ -76,14 +76,14 @@ def scenario_controller(
     scenario, robot : Scenario, Robot
         The scenario; a single robot.
     start : RobotState, optional
-        How the robot is found; as the scenario starts where left out.
+        Initial state of the robot; that of the scenario where left out.
     guard : bool
         Whether a guard checks the angles.
 
     Raises
     ------
     InputError
-        If a command names a gait that does not fit the robot, or a force is to be measured that nothing responds to.
+        If a command names a gait that does not fit the robot, or sets a force that its feet can't comply with.
     UnknownNameError
         If a command names a leg that the robot does not have.
     """

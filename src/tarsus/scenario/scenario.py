@@ -16,7 +16,7 @@ from tarsus.scenario.wording import command_text, time_text
 __all__ = ["LONGEST_TICK", "Scenario"]
 
 LONGEST_TICK = 0.05
-"""The longest tick [s]: of a longer one the walker walks no more than this."""
+"""The longest tick [s]; of a longer one, the walk controller would execute only this much."""
 
 _MOST_TICKS = 1_000_000
 

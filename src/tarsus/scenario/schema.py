@@ -26,17 +26,17 @@ SCALARS = tuple(COMMANDS[word] for word in ("body_height", "swing_height", "stan
 """Commands of one number, under its key."""
 
 WORDS = ("stand_up", "stop", "sit", "fold", "power_off")
-"""Commands that take nothing, under ``do``."""
+"""Commands without numbers, under ``do``."""
 
 
 class Table(BaseModel):
-    """Any table of the file: a key that it does not know is refused."""
+    """Base of all tables of the file; unknown keys are refused."""
 
     model_config = ConfigDict(extra="forbid", frozen=True)
 
 
 class _OrWord:
-    """A value, or one of some words in its place."""
+    """A number or numbers, or one of some words in their place."""
 
     def __init__(self, each: Number | Numbers, words: Collection[str]) -> None:
         self._each, self._words = each, words
@@ -68,7 +68,7 @@ def _table(kind: type[TimedCommand]) -> type[Table]:
 
 
 class _ByLeg:
-    """A table of legs: for each what one of `LEG_TABLES` says."""
+    """A table of legs, with a value for each leg as an entry of `LEG_TABLES` requires."""
 
     def __init__(self, table: LegTable) -> None:
         numbers = [Number(each.low, each.high, each.shown) for each in quantities(table.kind).values()]
@@ -76,7 +76,7 @@ class _ByLeg:
         self._each = _OrWord(one, table.words)
 
     def check(self, value: object) -> dict[str, Any]:
-        """Return the table; refuse what is none."""
+        """Return the table; refuse anything else."""
         if not isinstance(value, dict):
             raise refuse("must be a table of legs, such as { RF = ... }")
         return {str(leg): self._one(str(leg), item) for leg, item in value.items()}

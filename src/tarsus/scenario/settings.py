@@ -17,7 +17,7 @@ STARTS = ("standing", "sitting", "folded")
 """Initial states of the robot."""
 
 LEVELLINGS = ("level", "between", "follow", "none")
-"""Body attitudes on ground that is not level: level, or parallel to the ground."""
+"""Body attitudes on sloping ground: level, halfway between level and slope, along the slope, or uncontrolled."""
 
 NUMBERS = (
     Quantity("rate", "hz", 20, 1000, "control rate"),
@@ -29,7 +29,7 @@ NUMBERS = (
 )
 """Settings that are one number."""
 
-# Within these bounds the admittance's time constants are slower than the control loop.
+# Within these bounds, `Admittance` accepts every combination of numbers.
 ADMITTANCE = (
     Quantity("mass", "kg", 0.1, 1000, "virtual mass of a foot", needed=True),
     Quantity("damping", "ns_m", 0.001, 100_000, "virtual damping of a foot", needed=True),

@@ -23,7 +23,7 @@ def drive_summary(recording: Recording) -> dict[str, Any]:
     motion = recording.motion
     walking = recording.upright & np.array([activity != "standing" for activity in recording.activities])
     steps = np.diff(motion.time)
-    # Of the heading frame: a sway or a body shift is no way.
+    # The twist is that of the heading frame, so that swaying or shifting the body does not count as distance.
     path = np.linalg.norm(recording.twist[1:, :2], axis=1) * steps
     moved = walking[1:]
     yaw = np.unwrap(np.asarray(motion.body.rpy)[:, 2])

@@ -43,11 +43,11 @@ class _Token(NamedTuple):
 
 
 class _StatementError(Exception):
-    """A statement is wrong; the message says why."""
+    """An error in a statement; the message says what is wrong."""
 
 
 def read_timeline(text: str) -> tuple[list[tuple[int, TimedCommand]], list[str]]:
-    """Return the commands of a timeline with their line numbers, and a message for each error.
+    """Return the commands of a timeline, each with its line number, and a message for each error.
 
     Parameters
     ----------
@@ -92,7 +92,7 @@ class _Reader:
         self._tokens = list(reversed(tokens))
 
     def time(self, before: Decimal | None) -> Decimal:
-        """Read the time; without one, return that of the statement before."""
+        """Read the time of the statement; without one, return that of the previous statement."""
         if not self._next_is("word", "at"):
             if before is None:
                 raise _StatementError("the first command needs a time: at 0 s: ...")

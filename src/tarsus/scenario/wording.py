@@ -72,7 +72,7 @@ def command_from(kind: type[TimedCommand], at: Decimal, numbers: Mapping[str, Va
     if speed is not None:
         if si.keys() & {"vx", "vy"}:
             raise ValueError("speed and heading are the same as vx and vy; give one pair only")
-        # Rounding leaves a small forward part of a walk straight to the left.
+        # Through rounding, cos(90 deg) is not exactly 0: a walk straight to the left would get a tiny forward speed.
         parts = (math.cos(heading or 0.0), math.sin(heading or 0.0))
         si |= {
             axis: speed * part if abs(part) > _ROUNDING else 0.0 for axis, part in zip(("vx", "vy"), parts, strict=True)
