@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
 __all__ = ["DriveFrames", "command_of"]
 
-# How many of the guard's interventions a frame lists.
+# Number of the latest interventions of the guard that a frame lists.
 _LISTED = 5
 
 
@@ -42,17 +42,17 @@ class DriveFrames:
     def __init__(self, robot: Robot) -> None:
         self._robot = robot
         self._masses = MassWeights.of(robot)
-        # Replaced, never changed: a run notes in one thread, and its studio makes frames in another.
+        # Replaced as a whole, never changed: a run calls `note` in one thread, its studio calls `frame` in another.
         self._interventions: tuple[str, ...] = ()
         self._count = 0
 
     def note(self, output: ControlOutput) -> None:
-        """Count the guard's interventions of a tick.
+        """Count the guard's interventions in a tick, and keep the latest.
 
         Parameters
         ----------
         output : ControlOutput
-            What the controller gave.
+            The output of the controller.
         """
         self._count += len(output.interventions)
         latest = tuple(intervention.text() for intervention in reversed(output.interventions))
@@ -72,7 +72,7 @@ class DriveFrames:
         Parameters
         ----------
         output : ControlOutput
-            What the controller gave last.
+            The last output of the controller.
         id : int
             Id of the message that started driving.
         physics : FramePhysics, optional
@@ -80,7 +80,7 @@ class DriveFrames:
         machine : FrameMachine, optional
             What the servos measure.
         stands : (array, Pose, array), optional
-            Joint angles, body and contacts of the robot where they are not those commanded.
+            Actual joint angles, body pose and contacts, for the stability; those commanded where left out.
         """
         margin, com = (None, None) if output.belly else self._stability(output, stands)
         vx, vy, wz = output.twist

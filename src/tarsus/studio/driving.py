@@ -1,4 +1,4 @@
-"""Live driving: the robot controller that a visitor commands, and its frames."""
+"""Live driving: a robot controller that a visitor commands, and the frames that show what it does."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ __all__ = ["Driven", "Driver"]
 
 
 class Driven(Protocol):
-    """A robot that a visitor drives: as planned, in physics, or a machine that runs."""
+    """A robot that a visitor drives: executed ideally, simulated in physics, or a machine in a run."""
 
     @property
     def id(self) -> int:
@@ -44,7 +44,7 @@ class Driven(Protocol):
         Parameters
         ----------
         dt : float
-            Time since the last one [s].
+            Time since the last frame [s].
         """
 
     def close(self) -> None:
@@ -52,7 +52,7 @@ class Driven(Protocol):
 
 
 class Driver:
-    """A robot controller with an ideal or a simulated plant, and the command that holds.
+    """A robot controller with an ideal or a simulated plant, and the command in force.
 
     Parameters
     ----------
@@ -111,7 +111,7 @@ class Driver:
         Raises
         ------
         TarsusError
-            If the controller refuses the command; the last accepted one holds again.
+            If the controller refuses the command; the last accepted one is in force again.
         """
         controller = self._controller
         readings = self._plant.step(controller.output, dt)
@@ -129,4 +129,4 @@ class Driver:
         return self._frames.frame(output, id=self.id, physics=physics, stands=stands)
 
     def close(self) -> None:
-        """End driving, which needs nothing here."""
+        """End driving; there is nothing to release."""

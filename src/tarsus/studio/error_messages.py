@@ -38,7 +38,7 @@ _KINDS: tuple[tuple[type[TarsusError], Kind], ...] = (
     (TarsusError, "input"),
 )
 _BUG = "this is a bug in Tarsus, please report it"
-# A problem of a robot file: the key, an optional value, and the problem.
+# A line on a problem in a robot file: the key, an optional value, and the problem.
 _PROBLEM = re.compile(r"(?P<key>[A-Za-z_][\w.\[\]-]*)(?: = .*?)?: ")
 
 

@@ -31,7 +31,7 @@ Points: TypeAlias = Callable[[np.ndarray, np.ndarray], np.ndarray]
 
 _RAYS = 72
 _ALONG = 40
-# Halves the step of a ray (some mm) to less than a micrometre.
+# Number of bisections: they reduce the distance between samples of a ray (some mm) to less than a micrometre.
 _HALVINGS = 14
 
 
@@ -56,7 +56,7 @@ class Outline:
 
 @dataclass(frozen=True, eq=False)
 class _Plane:
-    """Points of a plane by direction and distance, and which of them are reachable."""
+    """A plane with polar coordinates: its points by direction and distance, and which of them are reachable."""
 
     points: Points
     reached: Callable[[np.ndarray], np.ndarray]

@@ -1,4 +1,4 @@
-"""What moves by itself in a session: the robot that is driven, and the servos that are brought up."""
+"""What moves in a session between messages: the robot that is driven, and the servos that are brought up."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 __all__ = ["Live"]
 
-# What a session of a run has besides its view Drive, and what may change the robot.
+# Messages that are available while the session belongs to a run, and messages that may change the robot.
 _WHILE_RUNNING = (ask.Hello, ask.Ping, ask.Drive, ask.Command, ask.EndRun)
 _OTHER_ROBOT = (ask.Hello, ask.SetRobot, ask.SetDocument, ask.SetToml, ask.Undo, ask.Redo, ask.OpenState)
 
@@ -36,9 +36,9 @@ class Live:
     run : DrivenRun, optional
         The run of a machine that the session belongs to.
     hardware : Hardware, optional
-        The servos of the computer on which it runs.
+        The servos of the computer on which the session runs.
     public : bool
-        Whether its server is public.
+        Whether the server of the session is public.
     """
 
     def __init__(self, run: DrivenRun | None, hardware: Hardware | None, *, public: bool) -> None:
@@ -49,12 +49,12 @@ class Live:
 
     @property
     def run_offer(self) -> RunOffer | None:
-        """The run, for the first answer."""
+        """The run that the first answer offers; None without one."""
         return None if self.run is None else RunOffer(bus=self.run.bus)
 
     @property
     def hardware_offer(self) -> HardwareOffer:
-        """Whether there is access to servos, for the first answer."""
+        """Whether there is access to servos, and why not, for the first answer."""
         return HardwareOffer(missing=why_no_hardware(public=self._public) if self._hardware is None else None)
 
     @property
@@ -64,21 +64,21 @@ class Live:
 
     @property
     def is_planning(self) -> bool:
-        """Whether the next frame may take longer."""
+        """Whether computing the next frame may take longer than a frame lasts."""
         return self._driver is not None and self._driver.is_planning
 
     @property
     def bring_up(self) -> PageBringUp | None:
-        """The bring-up under way."""
+        """The bring-up under way; None where there is none."""
         return self._bring_up
 
     def require_available(self, message: ClientMessage) -> None:
-        """Refuse what would disturb a bring-up or a run: another robot, and long computations beside the run.
+        """Refuse messages that would disturb a bring-up, by changing the robot, or a run, by long computations.
 
         Parameters
         ----------
         message : ClientMessage
-            What is asked for.
+            The message.
 
         Raises
         ------
@@ -119,7 +119,7 @@ class Live:
         message : Drive
             What is asked for.
         driver : callable
-            Makes a driver of a robot as planned or in physics, with the id of the message.
+            Returns the driver of an ideally executed or a simulated robot, given the id of the message.
         """
         self.end_driving()
         if message.on:
@@ -195,7 +195,7 @@ class Live:
         self._bring_up.answer(message.number, message.key)
 
     def close(self) -> None:
-        """End driving and bring-up, so that a machine stops: the visitor has left."""
+        """End driving and bring-up when the visitor leaves, so that a machine stops."""
         self.closed = True
         self.end_driving()
         if self._bring_up is not None:

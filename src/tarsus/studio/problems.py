@@ -1,4 +1,4 @@
-"""Problems of a message or a state, in the words of robot files: the key, its value, and what is allowed there."""
+"""Problems of a message or a state, worded as those of robot files: the key, its value, and what is allowed there."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ __all__ = ["problems_of"]
 
 
 class _Place(NamedTuple):
-    """Where a path of pydantic leads: keys without the names of union members, and the model of the last table."""
+    """Where a path of pydantic leads: keys, without the names of union members, and the model of the last table."""
 
     keys: tuple[int | str, ...]
     table: type[BaseModel]
@@ -55,7 +55,7 @@ def _place(location: Location, root: Any) -> _Place:
             field = table.model_fields.get(part)
             models = list(_models(field.annotation)) if field is not None else []
         else:
-            # The member of a union; of a type that is no model, there is nothing more to say.
+            # The name of a union member: go on with its model; where it is a type and no model, keep the first model.
             models = [model for model in models if part in _names(model)] or models[:1]
     return _Place(tuple(keys), table)
 

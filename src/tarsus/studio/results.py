@@ -68,7 +68,7 @@ class Results:
         return self._once("walk", (robot, state.walk), lambda: plan(robot, state.walk))
 
     def longest(self, state: StudioState) -> float:
-        """Return the longest possible stroke along the path [m]; it does not depend on speed and cycle time."""
+        """Return the longest possible stroke along the path [m]; it does not depend on stroke, speed and cycle time."""
         robot = self.robot(state)
         slow = {"stroke_mm": None, "speed_mm_s": None, "cycle_time_s": None, "rate_hz": 100.0, "strict": True}
         options = state.walk.model_copy(update=slow)
@@ -85,7 +85,7 @@ class Results:
         return self._once("terrain", (choice,), lambda: chosen_terrain(choice))
 
     def simulated(self, state: StudioState) -> Truth:
-        """Return the walk in physics, commanded at a rate of its own."""
+        """Return the walk in physics, planned and commanded at `COMMAND_RATE`."""
         options = state.walk.model_copy(update={"rate_hz": COMMAND_RATE})
         robot, servos, terrain = self.robot(state), state.physics.servos, self.terrain(state)
         if options == state.walk:

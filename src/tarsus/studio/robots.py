@@ -1,4 +1,4 @@
-"""Which robot, and what the browser is told of it."""
+"""The choice of a robot, and its description for the browser."""
 
 from __future__ import annotations
 
@@ -36,9 +36,10 @@ __all__ = [
 ]
 
 MOST_LEGS = 12
-"""Limit, as the cost of a walk grows with the square of the number of legs; the command line has none."""
+"""Greatest number of legs in the studio, as the cost of a walk grows with its square; the command line has no limit."""
 
-# Limit in characters of JSON, as undo keeps 100 documents per visitor; twelve legs with individual keys take a tenth.
+# Greatest size of a robot file as JSON [characters]: undo keeps 100 of them per visitor. Twelve legs with individual
+# keys take a tenth of it.
 _LARGEST = 65_536
 
 

@@ -201,7 +201,7 @@ class Session:
         yield from self._other_robot(choice_of_preset(message.preset), message)
 
     def _other_robot(self, choice: RobotChoice, message: ask.SetRobot | ask.SetToml) -> Answers:
-        """Change to another robot: in the poses and on the walk of the present one it might fall."""
+        """Change to another robot, with default poses and walk: those of the present robot might make it fall."""
         reset = {"robot": choice, "joints": JointsState(), "body": BodyState(), "walk": WalkOptions()}
         yield from self._take(self.state.model_copy(update=reset), id=message.id, commit=message.commit)
 
@@ -236,7 +236,7 @@ class Session:
         yield from self._posed({"body": message.body}, message)
 
     def _posed(self, change: dict[str, Any], message: ask.ChangePose) -> Answers:
-        """Change a pose; the answer is for the view of that pose, whatever the present one is."""
+        """Change a pose; the answer is for the view of that pose, whatever the present view is."""
         state = self.state.model_copy(update=change)
         view = "joints" if "joints" in change else "sources" if state.view == "sources" else "body"
         shown = state.model_copy(update={"view": view})
@@ -276,7 +276,7 @@ class Session:
 
     def _loads(self, message: ask.SetLoads) -> Answers:
         state = self.state.model_copy(update={"loads": message.loads})
-        # The loads belong to the walk that the client has, which may not be this one.
+        # The client relates loads to the walk that it received last, which may not be the walk of these loads.
         walk = [] if self._views.has_sent_walk(state) else [self._views.walk(state, id=message.id)]
         answer = self._views.loads(state, id=message.id)
         self._history.change(state, commit=message.commit)
@@ -287,7 +287,7 @@ class Session:
         state = self.state.model_copy(update={"physics": message.physics})
         answers = list(self._views.terrain(state, id=message.id))
         if message.physics != self.state.physics and (message.physics.on or self.state.physics.on):
-            # The client starts driving anew where it sees other physics.
+            # The client starts driving again when it sees that the physics has changed.
             self._live.end_driving()
         self._history.change(state, commit=message.commit)
         yield from answers

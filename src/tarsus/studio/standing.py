@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
 __all__ = ["OnFootholds", "Resting", "broken_limits", "resting_message", "standing_message"]
 
-# Height up to which a dragged foot is on the ground [m], and number of feet that can support a robot.
+# Height up to which a dragged foot is on the ground [m], and least number of feet that can support a robot.
 _ON_GROUND = 1e-5
 _LEAST_FEET = 3
 # Tolerance of joint limits, for rounding [rad].
@@ -38,7 +38,7 @@ class OnFootholds(Standing):
 
     @property
     def contacts(self) -> Bool[np.ndarray, "legs"]:
-        """Feet in contact ``(legs,)``: those that reach their foothold, if it is on the ground."""
+        """Which feet are in contact ``(legs,)``: those that reach their foothold, if it is on the ground."""
         on_ground = np.asarray(self.solution.feet)[:, 2] <= _ON_GROUND
         return np.asarray(super().contacts & on_ground)
 
@@ -107,7 +107,7 @@ class _Placed:
         contacts: Bool[np.ndarray, "legs"],
     ) -> Self:
         """Place the leg points and the centre of mass, given in B."""
-        # In one transformation, which costs as much for one point as for all.
+        # All points in one transformation, as its cost hardly depends on their number.
         placed = np.asarray(body @ np.concatenate([points.reshape(-1, 3), com[None]]))
         return cls(robot, angles, body, contacts, placed[:-1].reshape(points.shape), placed[-1])
 

@@ -19,7 +19,7 @@ from tarsus.studio.problems import problems_of
 __all__ = ["state_of", "text_of"]
 
 _VERSION = "1"
-# Limit of the decompressed size; a robot file of 100 legs with individual keys has a tenth of it.
+# Greatest decompressed size [bytes]; a robot file of 100 legs with individual keys has a tenth of it.
 _LARGEST = 2**20
 
 

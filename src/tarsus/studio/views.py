@@ -61,7 +61,7 @@ def fitted(state: StudioState, robot: Robot) -> StudioState:
 
 
 class Views:
-    """Creates the messages; results are computed once."""
+    """Creates the messages that show a state; each result is computed once."""
 
     def __init__(self) -> None:
         self.results = Results()
@@ -123,7 +123,7 @@ class Views:
         return self.results.walk(state) is self._sent
 
     def terrain(self, state: StudioState, *, id: int) -> Iterator[TerrainMessage]:
-        """Yield the terrain where physics is on, in the views that have it."""
+        """Yield the terrain where physics is on, in the views that show it."""
         if state.physics.on and state.view in ("walk", "drive"):
             yield terrain_message(self.results.terrain(state), state.physics.terrain, id=id)
 

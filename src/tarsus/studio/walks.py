@@ -26,7 +26,7 @@ from tarsus.studio.messages.state import Curve, OwnGait, Straight, WalkOptions
 __all__ = ["MOST_SAMPLES", "fewer_for_more_legs", "gait_of", "longest", "path_of", "plan", "walk_message"]
 
 MOST_SAMPLES = 10_000
-"""Limit of the samples of a plan for six legs; about 2 MB as a message."""
+"""Greatest number of samples of a plan for six legs; about 2 MB as a message."""
 
 _USUAL_LEGS = 6
 

@@ -55,7 +55,7 @@ class CalibrationText:
         return found
 
     def _robot(self) -> object:
-        """Return what the file calls its robot: with the legs of another one, all else would be wrong, too."""
+        """Return the robot's name in the file; checked first, as another robot's legs would cause many other errors."""
         try:
             return tomllib.loads(self.text).get("robot")
         except (ValueError, RecursionError):
@@ -63,7 +63,7 @@ class CalibrationText:
 
 
 def calibration_message(name: str, calibration: Calibration, *, id: int) -> CalibrationMessage:
-    """Return what the page needs to show pulses.
+    """Return the message with which the page shows pulses.
 
     Parameters
     ----------
@@ -91,12 +91,12 @@ def calibration_message(name: str, calibration: Calibration, *, id: int) -> Cali
 
 
 def calibration_or_problem(text: CalibrationText | None, robot: Robot, *, id: int) -> CalibrationMessage:
-    """Return what the page needs to show pulses, or why there are none.
+    """Return the message with which the page shows pulses, or that says why there are none.
 
     Parameters
     ----------
     text : CalibrationText or None
-        The calibration; None for none.
+        The calibration; None if there is none.
     robot : Robot
         A single robot, which may have changed since the calibration was loaded.
     id : int

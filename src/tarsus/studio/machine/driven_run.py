@@ -1,4 +1,4 @@
-"""A run of a machine that the view Drive drives: between the loop of the run and the visitors of its studio."""
+"""A run of a machine that is driven from the view Drive: the link between the run's loop and its studio's visitors."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ if TYPE_CHECKING:
 __all__ = ["DEADMAN", "DrivenRun"]
 
 DEADMAN = 0.7
-"""After this time without a message of the driver the robot stops [s]; a page sends 20 a second while it walks."""
+"""The robot stops after this time without a message from the driver [s]; while it walks, a page sends 20 a second."""
 
 # How often rate and missed ticks are computed [s].
 _TIMING_INTERVAL = 0.25
@@ -39,25 +39,25 @@ _NO_TWIST = (0.0, 0.0, 0.0)
 
 
 class DrivenRun:
-    """A source of commands for a run, given by the one visitor who drives; a deadman stops the robot without them.
+    """Source of the commands of a run: one visitor drives, and the robot stops when that visitor is not heard.
 
-    The loop of the run calls `command`, `over` and `observe`, the studio everything else, from another thread.
+    The loop of the run calls `command`, `over` and `observe`; the studio calls everything else from another thread.
 
     Parameters
     ----------
     controller : RobotController
         The controller of the run.
     bus : str
-        What executes the angles, for visitors.
+        Name of what executes the angles, shown to visitors.
     deadman : float
         Time without a message after which the twist is 0 [s].
     clock : Clock, optional
-        The machine's.
+        Clock of the machine.
 
     Attributes
     ----------
     plant : ServoPlant or None
-        What executes the angles, once it is there.
+        What executes the angles; None until it has been made.
     """
 
     def __init__(
@@ -77,7 +77,7 @@ class DrivenRun:
         self.plant: ServoPlant | None = None
         self._timing: Timing | None = None
         self._timed = -math.inf
-        # Refuses what the controller of the run would refuse, which would end the run.
+        # Checks the settings of commands beforehand: one that the controller of the run refuses would end the run.
         self._judge = RobotController(controller.robot)
 
     @property
@@ -85,7 +85,7 @@ class DrivenRun:
         """The robot, with the joint limits of the machine."""
         return self._controller.robot
 
-    # The loop of the run.
+    # Called by the loop of the run.
 
     def command(self, time: float, output: ControlOutput, note: Callable[[str, str], None]) -> Command:  # noqa: ARG002
         """Return the command for the next tick."""
@@ -101,23 +101,23 @@ class DrivenRun:
 
     def over(self, time: float, output: ControlOutput) -> bool:
         """Return whether the run is over: a visitor has ended it, and the robot stands still."""
-        # A run that was ended before it began still has the one tick that a recording needs.
+        # A run that is ended before its first tick still executes one, as a recording needs it.
         return self._ended and output.at_rest and time > 0
 
     def observe(self, record: TickRecord) -> None:
-        """Take what the plant did in a tick.
+        """Keep the record of a tick.
 
         Parameters
         ----------
         record : TickRecord
-            What it did.
+            What the plant did in the tick.
         """
         self._record = record
         if self.plant is not None and record.time - self._timed >= _TIMING_INTERVAL:
             self._timed, self._timing = record.time, self.plant.timing
         self._fault = record.fault or self._fault
 
-    # The studio.
+    # Called by the studio.
 
     def take(self, driver: object) -> None:
         """Let a visitor drive.
@@ -152,7 +152,7 @@ class DrivenRun:
                 self._driver = None
 
     def tell(self, driver: object, message: ask.Command) -> None:
-        """Set the command; it holds until the next one, the twist for as long as the visitor is heard.
+        """Set the command; it holds until the next one, but its twist only as long as the visitor is heard.
 
         Parameters
         ----------
@@ -224,7 +224,7 @@ class DrivenRun:
         )
 
     def _worst(self, values: Float[np.ndarray, "legs 3"]) -> tuple[float | None, str | None]:
-        """Return the greatest of the values that are known, and the name of its joint."""
+        """Return the greatest of the known values, and the name of its joint; None for both where none is known."""
         if np.isnan(values).all():
             return None, None
         leg, joint = np.unravel_index(int(np.nanargmax(values)), values.shape)

@@ -1,4 +1,4 @@
-"""The access of a studio to the servos of the computer on which it runs."""
+"""A studio's access to the servos of the computer on which it runs."""
 
 from __future__ import annotations
 
@@ -17,12 +17,12 @@ __all__ = ["Hardware", "why_no_hardware"]
 
 
 def why_no_hardware(*, public: bool) -> str:
-    """Return why a session without access to hardware has none.
+    """Return why a session has no access to hardware.
 
     Parameters
     ----------
     public : bool
-        Whether its server is public.
+        Whether the server of the session is public.
     """
     if sys.platform == "emscripten":
         return (
@@ -43,13 +43,13 @@ class Hardware:
     Parameters
     ----------
     folder : Path
-        Where calibration files are.
+        Folder of calibration files.
     robot_file : Path, optional
-        File of a robot that is no preset.
+        File of a robot that is not a preset.
     calibration : Path, optional
-        The calibration file; left out, one that is named after the robot.
+        The calibration file; one that is named after the robot where left out.
     clock : Clock, optional
-        The machine's.
+        Clock of the machine.
     """
 
     def __init__(
@@ -71,12 +71,12 @@ class Hardware:
         Parameters
         ----------
         owner : object
-            Who needs them.
+            Whoever is to use them.
 
         Raises
         ------
         InputError
-            If someone else has them.
+            If they are reserved for another owner.
         """
         with self._lock:
             if self._owner not in (None, owner):
@@ -84,21 +84,21 @@ class Hardware:
             self._owner = owner
 
     def leave(self, owner: object) -> None:
-        """Give the servos back.
+        """Release the reservation; nothing happens where another owner has it.
 
         Parameters
         ----------
         owner : object
-            Who had them.
+            Whoever used the servos.
         """
         with self._lock:
             if self._owner is owner:
                 self._owner = None
 
     def files(self, robot: Robot) -> tuple[str, Path]:
-        """Return what a calibration file calls a robot, and the path of its calibration file.
+        """Return a robot's name or file, as its calibration file states it, and the path of that calibration file.
 
-        A robot that is no preset and has no file yet gets one beside its calibration.
+        For a robot that is neither a preset nor in a file yet, a robot file is written to the folder.
 
         Parameters
         ----------
@@ -108,9 +108,9 @@ class Hardware:
         Raises
         ------
         InputError
-            If there is a file of that name with another robot.
+            If the file of that name contains another robot.
         TarsusError
-            If it can't be written.
+            If the robot file can't be read or written.
         """
         if robot.name in list_robots() and load_robot(robot.name) == robot:
             return robot.name, self._calibration or self._folder / f"{robot.name}.calibration.toml"

@@ -1,4 +1,4 @@
-"""The bring-up of a machine from a page: the steps of `tarsus bring-up`, in a thread."""
+"""The bring-up of a machine from a page: it runs the steps of `tarsus bring-up` in a thread."""
 
 from __future__ import annotations
 
@@ -26,12 +26,12 @@ if TYPE_CHECKING:
 
 __all__ = ["PageBringUp"]
 
-# How long the end of the program waits until the servos are released [s].
+# Longest wait for the servos to be released when the program ends [s].
 _PATIENCE = 5.0
 
 
 class PageBringUp:
-    """A bring-up that begins at once, and asks in a page.
+    """A bring-up that begins at once, and asks its questions in a page.
 
     Parameters
     ----------
@@ -40,12 +40,12 @@ class PageBringUp:
     robot : Robot
         A single robot.
     id : int
-        Id of the message that began it; all its messages carry it.
+        Id of the message that began the bring-up; all its messages carry it.
 
     Raises
     ------
     InputError
-        If another visitor uses the servos, or the robot's file is another robot.
+        If another visitor uses the servos, or the file of the robot's name contains another robot.
     """
 
     def __init__(self, hardware: Hardware, robot: Robot, *, id: int) -> None:
@@ -63,13 +63,13 @@ class PageBringUp:
         self._problem: str | None = None
         self._sent: BringUpMessage | None = None
         self._thread = threading.Thread(target=self._perform, name="bring-up", daemon=True)
-        # The servos are released when the program ends, however that ends.
+        # Releases the servos also where the program ends during the bring-up.
         atexit.register(self._end_now)
         self._thread.start()
 
     @property
     def is_over(self) -> bool:
-        """Whether it has ended, and the page knows."""
+        """Whether the bring-up has ended, and the page was told."""
         return self._sent is not None and self._sent.state in ("done", "left", "failed")
 
     def answer(self, number: int, key: str) -> None:
@@ -78,19 +78,19 @@ class PageBringUp:
         Parameters
         ----------
         number : int
-            Its number.
+            Number of the question.
         key : str
-            Key of one of its choices.
+            Key of the choice.
 
         Raises
         ------
         InputError
-            If it is not asked now, or has no such choice.
+            If the question is not asked now, or has no such choice.
         """
         self._dialogue.answer(number, key)
 
     def leave(self) -> None:
-        """Release the servos, and end; what was answered is saved."""
+        """End the bring-up, and release the servos; the answers so far are saved."""
         self._dialogue.leave()
 
     def _end_now(self) -> None:
@@ -98,7 +98,7 @@ class PageBringUp:
         self._thread.join(_PATIENCE)
 
     def message(self) -> BringUpMessage | None:
-        """Return how far it is; None where the page knows."""
+        """Return the progress of the bring-up; None where it is the same as in the last message."""
         end, question = self._end, self._dialogue.question
         found = BringUpMessage(
             type="bring_up",
@@ -139,7 +139,7 @@ class PageBringUp:
             self._wizard.perform()
         except Left:
             self._finish("left")
-        except Exception as error:  # said in the page, whatever it is
+        except Exception as error:  # every error is shown in the page
             self._problem = error_message(error, id=self.id).text
             self._finish("failed")
         else:

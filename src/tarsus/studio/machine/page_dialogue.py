@@ -1,4 +1,4 @@
-"""A bring-up that asks in a page: its thread waits until the visitor answers."""
+"""The dialogue of a bring-up in a page: the thread of the bring-up waits until the visitor answers."""
 
 from __future__ import annotations
 
@@ -12,17 +12,17 @@ from tarsus.studio.messages.machine import Choice, Question
 
 __all__ = ["LeavingClock", "PageDialogue"]
 
-# How many of the last lines a page shows.
+# Number of the latest lines that a page shows.
 _LINES = 8
 
 
 class PageDialogue:
-    """Someone who answers in a page. `say` and `choose` are called in the thread of the bring-up.
+    """A dialogue with a visitor in a page. `say` and `choose` are called in the thread of the bring-up.
 
     Parameters
     ----------
     before_going_on : callable
-        Called with the topic of a question, in the thread of the bring-up, once it was answered with the usual answer.
+        Called with the topic of a question after it was answered with the usual answer, in the thread of the bring-up.
     """
 
     def __init__(self, before_going_on: Callable[[Topic], None]) -> None:
@@ -31,29 +31,29 @@ class PageDialogue:
         self._number = 0
         self._key: str | None = None
         self._leaving = False
-        # Replaced, never changed: the page reads them in another thread.
+        # Replaced as a whole, never changed: the page reads it in another thread.
         self.said: tuple[str, ...] = ()
         self.question: Question | None = None
 
     def say(self, text: str) -> None:
-        """Tell something.
+        """Show a line of text in the page.
 
         Parameters
         ----------
         text : str
-            What.
+            The line.
         """
         self.said = (*self.said, text)[-_LINES:]
 
     def choose(self, question: str, options: Mapping[str, str], *, topic: Topic) -> str:
-        """Ask, and wait for the key of an option.
+        """Ask a question, wait for the answer, and return the key of the option that was chosen.
 
         Parameters
         ----------
         question : str
             The question.
         options : mapping of str to str
-            Keys, and what they mean.
+            Meanings of the options by their keys; the empty key is the usual answer.
         topic : Topic
             What the question is about.
 
@@ -88,14 +88,14 @@ class PageDialogue:
         Parameters
         ----------
         number : int
-            Its number.
+            Number of the question.
         key : str
-            Key of one of its choices.
+            Key of the choice.
 
         Raises
         ------
         InputError
-            If it is not asked now, or has no such choice.
+            If the question is not asked now, or has no such choice.
         """
         with self._changed:
             question = self.question
@@ -108,13 +108,13 @@ class PageDialogue:
             self._changed.notify_all()
 
     def leave(self) -> None:
-        """Leave, at once where a question is asked, else with the next tick of a motion."""
+        """End the dialogue: at once where a question is asked, else at the next tick of a motion."""
         with self._changed:
             self._leaving = True
             self._changed.notify_all()
 
     def raise_if_left(self) -> None:
-        """Raise `Left` where the visitor has left, once: what ends a motion then is not interrupted."""
+        """Raise `Left` once after the visitor has left, so that what then ends a motion is not interrupted."""
         if self._leaving:
             self._leaving = False
             raise Left
@@ -128,23 +128,23 @@ class LeavingClock:
     clock : Clock
         The clock.
     dialogue : PageDialogue
-        Where the visitor is.
+        The dialogue that the visitor may leave.
     """
 
     def __init__(self, clock: Clock, dialogue: PageDialogue) -> None:
         self._clock, self._dialogue = clock, dialogue
 
     def now(self) -> float:
-        """Return the time [s]; only differences mean something."""
+        """Return the time since an arbitrary moment [s]."""
         return self._clock.now()
 
     def sleep(self, seconds: float) -> None:
-        """Wait.
+        """Wait, unless the visitor has left.
 
         Parameters
         ----------
         seconds : float
-            How long [s].
+            Time to wait [s].
 
         Raises
         ------

@@ -1,4 +1,4 @@
-"""A visitor's part of a run that is driven from the view Drive."""
+"""The driver of a visitor who drives a run from the view Drive."""
 
 from __future__ import annotations
 
@@ -47,7 +47,7 @@ class RunDriver:
         self._run.tell(self, message)
 
     def step(self, dt: float) -> DriveFrame:  # noqa: ARG002
-        """Return a frame; the run has a clock of its own."""
+        """Return a frame; the run itself keeps the time of its ticks."""
         return self._run.frame(self.id)
 
     def end_run(self) -> None:

@@ -23,14 +23,14 @@ if TYPE_CHECKING:
 
 __all__ = ["LivePhysics", "contacts_of"]
 
-# How long a servo is named after it has been at its maximum torque [s].
+# A servo is named this long after it was at its maximum torque [s].
 _NAMED = 0.5
-# States in which the body must not touch the ground; in the others it rests there, or comes from there.
+# States in which the body must not touch the ground; in the others it lies there, or moves to or from there.
 _UPRIGHT = (RobotState.STANDING, RobotState.WALKING)
 
 
 class LivePhysics:
-    """The plant of a driven robot, and how the robot fares.
+    """The simulated plant of a driven robot, with a watch for falls and for servos at their maximum torque.
 
     Parameters
     ----------
@@ -39,12 +39,12 @@ class LivePhysics:
     options : PhysicsOptions
         Servos and sensors.
     terrain : Terrain
-        What it walks on.
+        Ground to walk on.
 
     Raises
     ------
     MissingDataError
-        If the mass of the body or of a link is unknown, or a servo for the catalogue's servos.
+        If the mass of the body or of a link is unknown; with the servos of the catalogue, also if a servo is.
     TarsusError
         If MuJoCo is not installed.
     """
@@ -56,12 +56,12 @@ class LivePhysics:
         self._fell: str | None = None
 
     def frame(self, output: ControlOutput) -> tuple[PlantState, FramePhysics]:
-        """Return the state of the robot, and the same as part of a frame.
+        """Return the state of the robot, as it is and as part of a frame.
 
         Parameters
         ----------
         output : ControlOutput
-            What the plant executed last.
+            The output that the plant executed last.
         """
         state = self.plant.state
         self._saturated_at[state.saturated] = state.time
@@ -83,7 +83,7 @@ class LivePhysics:
         )
 
     def _watch(self, output: ControlOutput, state: PlantState, tilt: float) -> None:
-        """Note the first fall."""
+        """Keep when and how the robot first falls."""
         if self._fell is not None:
             return
         if tilt > FALLEN:
@@ -106,6 +106,6 @@ def contacts_of(state: PlantState) -> Bool[np.ndarray, "legs"]:
     Parameters
     ----------
     state : PlantState
-        What the robot does.
+        State of the simulated robot.
     """
     return np.asarray(state.foot_forces[:, 2] > CONTACT_FORCE)

@@ -24,9 +24,9 @@ from tarsus.studio.messages.physics import (
 __all__ = ["MOST_BLOCKS", "MOST_COUNT", "MOST_POINTS", "chosen_terrain", "physics_offer", "terrain_message"]
 
 MOST_BLOCKS, MOST_POINTS, MOST_COUNT = 1600, 40_000, 100
-"""Limits of what is simulated for a visitor and sent: blocks, points of smooth ground, and steps or gaps."""
+"""Greatest numbers of parts that are simulated for a visitor: blocks, points of smooth ground, steps or gaps."""
 
-# Lengths that are simulated [mm]: the physics engine refuses smaller shapes, and knows none without end.
+# Range of lengths that are simulated [mm]: the physics engine refuses smaller shapes, and has no unbounded ones.
 _SMALLEST, _LARGEST = 0.5, 20_000.0
 
 # Ranges of the sliders: least, greatest value and step [mm, deg]. Values outside can be typed.
@@ -129,7 +129,7 @@ def terrain_message(terrain: Terrain, choice: TerrainChoice, *, id: int) -> Terr
     terrain : Terrain
         The terrain.
     choice : TerrainChoice
-        Its choice.
+        The choice that it was made from.
     id : int
         Id of the message that is answered.
 

@@ -24,7 +24,7 @@ COMMAND_RATE = 100.0
 
 
 MOST_SIMULATED = 3000
-"""Limit of the samples of a simulated walk for six legs, which take two seconds."""
+"""Greatest number of samples of a simulated walk for six legs; simulating them takes two seconds."""
 
 
 def check_length(motion: Motion) -> None:
@@ -38,7 +38,7 @@ def check_length(motion: Motion) -> None:
     Raises
     ------
     InputError
-        If it is.
+        If it is too long.
     """
     most = fewer_for_more_legs(MOST_SIMULATED, motion.robot)
     if len(motion.time) > most:
@@ -54,7 +54,7 @@ def simulated_message(found: Truth, *, id: int) -> SimulatedMessage:
     Parameters
     ----------
     found : Truth
-        The plan, and what it became.
+        The plan, and what became of it in physics.
     id : int
         Id of the message that is answered.
     """

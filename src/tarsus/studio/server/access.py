@@ -43,7 +43,7 @@ _OPEN = frozenset({"/health"})
 
 
 class AccessControl:
-    """Rejects requests from other origins or without the token.
+    """Rejects requests for unknown hosts or without the token, and sockets from other origins.
 
     Parameters
     ----------
@@ -84,9 +84,9 @@ class AccessControl:
         headers = _headers(scope)
         if not (self._is_our_host(headers) and _same_origin(headers)):
             await receive()
-            await send({"type": "websocket.close", "code": 1008})  # before it is accepted: HTTP 403
+            await send({"type": "websocket.close", "code": 1008})  # closed before it is accepted: HTTP 403
         elif not self._knows_token(scope, headers):
-            # Browsers report the close code of accepted sockets only.
+            # Accepted first, as browsers report the close code of accepted sockets only.
             await receive()
             await send({"type": "websocket.accept"})
             await send({"type": "websocket.close", "code": CLOSED["TOKEN"][0], "reason": CLOSED["TOKEN"][1]})
@@ -94,7 +94,7 @@ class AccessControl:
             await self._app(scope, receive, send)
 
     def _is_our_host(self, headers: dict[str, str]) -> bool:
-        """Return whether the host is local, for a loopback server: protects against DNS rebinding."""
+        """Return whether the request is for a local host name; on a loopback server this prevents DNS rebinding."""
         if not self._settings.loopback:
             return True
         try:
@@ -118,7 +118,7 @@ def _headers(scope: Scope) -> dict[str, str]:
 
 
 def _same_origin(headers: dict[str, str]) -> bool:
-    """Return whether the origin is this server or missing; browsers always send it."""
+    """Return whether the origin is this server, or missing: browsers always send it, other clients need not."""
     origin = headers.get("origin")
     return origin is None or urlsplit(origin).netloc.lower() == headers.get("host", "").lower()
 

@@ -1,7 +1,8 @@
-"""Fewer system calls: batched writes, and no pause of reading that ends before the next message could be read.
+"""Fewer system calls: writes are batched, and a pause of reading that would end before the next message is left out.
 
 The answer to a slider is two messages, pose and `done`. A system call for each would cost a quarter of the time that
-computing the pose takes. Uvicorn pauses reading for every message until it is received, which takes two more calls.
+computing the pose takes. For every message, Uvicorn pauses reading until the application has received it, which takes
+two more calls.
 """
 
 from __future__ import annotations
@@ -38,7 +39,7 @@ class BatchedTransport:
         self._transport.close()
 
     def pause_reading(self) -> None:
-        """Pause reading, unless it is resumed before the next message could be read."""
+        """Pause reading in the next iteration of the event loop, unless it is resumed before."""
         self._pausing = self._loop.call_soon(self._pause)
 
     def resume_reading(self) -> None:

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 __all__ = ["Inbox"]
 
-# Types of which only the newest is processed: each sets its whole part of the state, or requests a result for it.
+# Types of which only the newest message is processed: each sets a part of the state as a whole, or requests a result.
 _NEWEST = (
     *(ask.SetJoints, ask.SetBody, ask.DragFoot, ask.SetWalk, ask.SetLoads, ask.SetDocument, ask.ChooseSource),
     *(ask.SizeServos, ask.ShowWorkspace, ask.Command),
@@ -61,7 +61,7 @@ class Inbox:
         dropped: list[Done] = []
         if isinstance(message, _NEWEST):
             kept: deque[ClientMessage] = deque()
-            # Not beyond messages whose order matters, such as undo.
+            # Only back to the last message whose order matters, such as undo.
             while self._waiting and isinstance(self._waiting[-1], _NEWEST):
                 older = self._waiting.pop()
                 if _same(older, message):
@@ -81,7 +81,7 @@ def _same(older: ClientMessage, newer: ClientMessage) -> bool:
 
 
 def _with_commit_of(older: ClientMessage, newer: ClientMessage) -> ClientMessage:
-    """Return the newer message, with a commit if the older one has one."""
+    """Return the newer message; it commits if the older one does."""
     if not getattr(older, "commit", False):
         return newer
     committed: Any = newer.model_copy(update={"commit": True})

@@ -22,12 +22,12 @@ from tarsus.studio.server.settings import Settings
 
 __all__ = ["Serving"]
 
-# Interval in which connections that came late are looked for while the server ends [s].
+# Interval between searches for late connections while the server ends [s].
 _SHUTDOWN_CHECK = 0.05
 
 
 class _Server(uvicorn.Server):
-    """Uvicorn, ending also connections that were being accepted while it asked all others to end."""
+    """Uvicorn that, when it ends, also closes connections that it accepts after it has asked the others to close."""
 
     async def shutdown(self, sockets: list[socket.socket] | None = None) -> None:
         asked = set(self.server_state.connections)
@@ -132,10 +132,10 @@ _ELSEWHERE = {socket.AF_INET: ("192.0.2.1", 9), socket.AF_INET6: ("2001:db8::1",
 
 
 def _own_address(family: socket.AddressFamily) -> str:
-    """Return the address of this machine in its network; a name such as ``robot`` is unknown to other machines."""
+    """Return this machine's address in its network, as other machines may not know its name."""
     with socket.socket(family, socket.SOCK_DGRAM) as probe:
         try:
-            # Connecting a datagram socket selects the interface, and its address, without sending anything.
+            # Connecting a datagram socket selects its interface and local address, and sends nothing.
             probe.connect(_ELSEWHERE[family])
             return str(probe.getsockname()[0])
         except OSError:  # not in a network
@@ -147,7 +147,7 @@ def _listen(host: str, port: int) -> socket.socket:
         family, kind, protocol, _, address = socket.getaddrinfo(
             host, port, type=socket.SOCK_STREAM, proto=socket.IPPROTO_TCP
         )[0]
-        # asyncio sets TCP_NODELAY only if the protocol is TCP; else small messages are delayed by 40 ms.
+        # asyncio sets TCP_NODELAY only if the socket's protocol is TCP; else small messages are delayed by 40 ms.
         listener = socket.socket(family, kind, protocol)
     except OSError as error:
         raise InputError(_why(host, port, error)) from None

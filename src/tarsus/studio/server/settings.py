@@ -27,9 +27,9 @@ class Limits:
     message_bytes : int
         Greatest size of a message [bytes].
     messages_per_s : float
-        Sustained messages per second; bursts of twice as many.
+        Sustained messages per second; bursts may have twice as many.
     malformed : int
-        Malformed or excess messages after which the session ends.
+        Number of malformed or excess messages in succession that are tolerated; one more ends the session.
     sessions : int
         Simultaneous sessions.
     idle_s : float
@@ -116,7 +116,7 @@ class Settings:
 
     @property
     def cookie(self) -> str:
-        """Name of the cookie with the token; it has the port, as cookies are shared between ports."""
+        """Name of the cookie with the token; it contains the port, as browsers share cookies between ports."""
         return f"tarsus_studio_{self.port}"
 
     @staticmethod

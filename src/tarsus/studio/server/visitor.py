@@ -31,18 +31,18 @@ if TYPE_CHECKING:
 
 __all__ = ["Visitor"]
 
-# Messages that take 1 to 2 ms are processed in the event loop: a thread would double that.
+# Messages that take only 1 to 2 ms and are processed in the event loop: a thread would double that time.
 _QUICK = (ask.Ping, ask.SetJoints, ask.Command)
 
-# Longest tick, however late a frame is [s]: a longer one would be a jump.
+# Longest tick, however late its frame is [s]: in a longer one the robot would jump.
 _LONGEST_STEP = 0.05
 
 
-# Interval of the check for idle sessions, at most [s].
+# Longest interval between checks whether the session is idle [s].
 _LONGEST_SLEEP = 600.0
 
 
-class _SessionEnd(Exception):  # noqa: N818 - it is no error
+class _SessionEnd(Exception):  # noqa: N818 - not an error
     """The end of the session, with the reason for the client."""
 
     def __init__(self, why: str) -> None:
@@ -110,7 +110,7 @@ class Visitor:
             await self._take(received.get("bytes") or b"" if text is None else text, allowed=rate.take(_now()))
 
     async def _end_idle(self) -> None:
-        """End the session after too long a time without messages; a timeout for each of them would cost more."""
+        """End the session after too long without messages; cheaper than a timeout while waiting for each message."""
         while (left := self._heard + (self._limits.idle_s or math.inf) - _now()) > 0:
             await asyncio.sleep(min(left, _LONGEST_SLEEP))
         raise _SessionEnd("IDLE")
@@ -158,7 +158,7 @@ class Visitor:
                 await self._send([] if frame is None else [frame])
 
     async def _frame(self, dt: float) -> DriveFrame | BringUpMessage | ErrorMessage | None:
-        """Return the next frame; while one visitor's change of state is planned, the others' frames continue."""
+        """Return the next frame; a change of state is planned in a thread, so that other visitors' frames continue."""
         if not self._session.is_planning:
             return self._session.frame(dt)
         return await asyncio.get_running_loop().run_in_executor(self._threads, self._session.frame, dt)
@@ -183,7 +183,7 @@ class Visitor:
         await self._send_texts([message.model_dump_json() for message in messages])
 
     async def _send_texts(self, texts: Sequence[str]) -> None:
-        # Reader and worker both send; the answers to a message must not be interleaved.
+        # Both `_read` and `_work` send; the answers to one message must not be interleaved with others.
         async with self._sending:
             for text in texts:
                 await self._socket.send_text(text)

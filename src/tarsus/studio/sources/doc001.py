@@ -183,5 +183,5 @@ def _moved(leg: Live, by: float) -> tuple[float, float]:
 
 
 def _turned(leg: Live, way: int) -> tuple[float, float]:
-    """Return an end of the stance (x, y) on the curved walk [m]."""
+    """Return an end (x, y) of the stance on the curved walk [m]; `way` is 1 counter-clockwise and -1 clockwise."""
     return leg.on_curve(way * leg.stroke_angle / 2)

@@ -30,7 +30,7 @@ _ROTATION = (
 
 
 def _rotation(leg: Live) -> Float[np.ndarray, "3 3"]:
-    """Return roll times pitch times yaw, the yaw first."""
+    """Return the rotation matrix roll times pitch times yaw, which turns by the yaw first."""
     roll, pitch, yaw = map(float, leg.rpy)
     return np.asarray((Pose.from_rpy(roll=roll) @ Pose.from_rpy(pitch=pitch) @ Pose.from_rpy(yaw=yaw)).rotation)
 

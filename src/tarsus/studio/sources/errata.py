@@ -70,7 +70,7 @@ def rows_of_page(text: str) -> tuple[Row, ...]:
 
 
 def _plain(cell: str) -> str:
-    """Return the text of a cell without Markdown."""
+    """Return the plain text of a cell, without Markdown and HTML."""
     return html.unescape(re.sub(r"</?code>|`", "", cell.strip()))
 
 

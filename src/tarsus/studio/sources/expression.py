@@ -1,7 +1,7 @@
-"""Equations written once: read, worked out with numbers, and turned into MathML, with symbols or with the numbers.
+"""Equations that are written once, evaluated with numbers, and shown as MathML with symbols or with numbers.
 
-An expression is a line of Python arithmetic: names, numbers, ``+ - * / **``, and the functions of `FUNCTIONS`. Nothing
-of it is ever run: it is read as a tree, and the tree is walked.
+An expression is a line of Python arithmetic: names, numbers, ``+ - * / **``, and the functions of `FUNCTIONS`. It is
+never executed as Python: it is parsed into a syntax tree, and the tree is evaluated here.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ from tarsus.studio.messages.general import MathNode
 __all__ = ["FUNCTIONS", "UNITS", "Expression", "Quantity", "symbol_node"]
 
 UNITS: Mapping[str, float] = {"mm": 1e-3, "deg": math.pi / 180, "mm²": 1e-6, "": 1.0}
-"""Units in which numbers are shown, in SI; what is not here is shown in SI."""
+"""Units in which numbers are shown, and their sizes in SI units; other units are SI units."""
 
 _SUM, _PRODUCT, _POWER, _ATOM = 1, 2, 3, 4
 _GREEK = {
@@ -53,7 +53,7 @@ FUNCTIONS: Mapping[str, tuple[str, Callable[..., float]]] = {
     "abs": ("abs", abs),
     "deg": ("deg", _deg),
 }
-"""Functions of expressions: what they are called in print, and how they are worked out."""
+"""Functions of expressions by name: the name in print, and the function that computes the value."""
 
 _SIGNS: Mapping[type[ast.operator], tuple[str, int]] = {
     ast.Add: ("+", _SUM),
@@ -69,9 +69,9 @@ class Quantity:
     Attributes
     ----------
     value : float
-        In SI units.
+        The number in SI units.
     unit : str
-        In which it is shown.
+        Unit in which it is shown.
     """
 
     value: float
@@ -84,8 +84,8 @@ class Quantity:
 
     @property
     def text(self) -> str:
-        """The number in print: five digits, degrees with their sign."""
-        # What rounding leaves of a zero is a zero.
+        """The number in print: five significant digits, degrees with their sign."""
+        # A zero with rounding errors is shown as zero.
         shown = self.shown if abs(self.shown) > 1e-12 else 0.0
         number = np.format_float_positional(shown, precision=5, fractional=False, trim="-").replace("-", "−")
         return f"{number}°" if self.unit == "deg" else number
@@ -96,12 +96,12 @@ Symbols: TypeAlias = Mapping[str, Quantity]
 
 @dataclass(frozen=True)
 class Expression:
-    """An expression, read.
+    """An expression that can be evaluated and shown.
 
     Attributes
     ----------
     source : str
-        As it was written.
+        The expression as Python arithmetic.
     """
 
     source: str
@@ -111,12 +111,12 @@ class Expression:
         return ast.parse(self.source, mode="eval").body
 
     def value(self, symbols: Symbols) -> float:
-        """Return what comes out; NaN where it can't be worked out, as for a root of a negative number.
+        """Return the value; NaN where there is none, as for the root of a negative number.
 
         Parameters
         ----------
         symbols : mapping
-            What its names stand for.
+            Quantities by the names that stand for them.
         """
         try:
             return _value(self._tree, symbols)
@@ -124,16 +124,16 @@ class Expression:
             return math.nan
 
     def formula(self) -> MathNode:
-        """Return it with its symbols, as MathML."""
+        """Return the expression with its symbols, as MathML."""
         return _node(self._tree, {})
 
     def numbers(self, symbols: Symbols) -> MathNode:
-        """Return it with numbers for its symbols, as MathML.
+        """Return the expression with numbers in place of its symbols, as MathML.
 
         Parameters
         ----------
         symbols : mapping
-            What its names stand for.
+            Quantities by the names that stand for them.
         """
         return _node(self._tree, symbols)
 
@@ -191,7 +191,8 @@ def _joined(tree: ast.BinOp, symbols: Symbols) -> MathNode:
             power = [_bracketed(tree.left, symbols, _ATOM), _node(tree.right, symbols)]
             return MathNode(tag="msup", children=power)
     text, level = _SIGNS[type(tree.op)]
-    # To the right of a minus a sum needs brackets; to the right of a point nothing but a sum does.
+    # To the right of a minus sign, a sum needs brackets; to the right of a plus or multiplication sign, its own level
+    # does not.
     after = level + 1 if isinstance(tree.op, ast.Sub) else level
     return _row(_bracketed(tree.left, symbols, level), _leaf("mo", text), _bracketed(tree.right, symbols, after))
 
@@ -210,7 +211,7 @@ def _call(name: str, arguments: list[ast.expr], symbols: Symbols) -> MathNode:
 
 
 def _bracketed(tree: ast.expr, symbols: Symbols, least: int) -> MathNode:
-    """Return a part of an expression, in brackets where it holds together less firmly than what is around it."""
+    """Return a part of an expression, in brackets where its operator binds less tightly than the one around it."""
     node = _node(tree, symbols)
     loose = _firmness(tree) < least or _is_negative(tree, symbols)
     return _row(_leaf("mo", "("), node, _leaf("mo", ")")) if loose else node
@@ -240,7 +241,7 @@ def _row(*children: MathNode) -> MathNode:
 
 
 def symbol_node(name: str) -> MathNode:
-    """Return a symbol: Greek letters by their names, what follows an underscore or is a number set low.
+    """Return a symbol: names of Greek letters become letters; an index after an underscore, or a number, is set low.
 
     Parameters
     ----------

@@ -31,11 +31,11 @@ class WalkValues:
     stroke : float
         Stroke of a foot [m].
     distance, heading : float
-        Of a straight walk [m, rad].
+        Length and direction of a straight walk [m, rad].
     angle : float
-        Of a curved walk, positive to the left [rad].
+        Angle of a curved walk about its centre, positive to the left [rad].
     centre : tuple of float
-        Of a curved walk: (x, y) in the body frame [m].
+        Centre (x, y) of a curved walk in the body frame [m].
     """
 
     stroke: float = 0.04
@@ -46,7 +46,7 @@ class WalkValues:
 
     @classmethod
     def of(cls, options: WalkOptions) -> Self:
-        """Return the values of the view Walk; those that it does not give are the defaults here.
+        """Return the values of the view Walk; those that it does not state are the defaults of this class.
 
         Parameters
         ----------

@@ -1,4 +1,4 @@
-"""One source document as a message: its equations with the live numbers in them, and its mistakes."""
+"""A source document as a message: its equations with live numbers, and its errata."""
 
 from __future__ import annotations
 
@@ -33,16 +33,16 @@ _AGREES = 1e-6
 def source_message(
     standing: OnFootholds, choice: SourceChoice, walk: WalkOptions | None = None, *, id: int
 ) -> SourceMessage:
-    """Return a document with the numbers of a leg as it stands.
+    """Return a document with the numbers of a leg of the standing robot.
 
     Parameters
     ----------
     standing : OnFootholds
-        How the robot stands.
+        The standing robot.
     choice : SourceChoice
-        Which document, which leg.
+        The document and the leg.
     walk : WalkOptions, optional
-        Options of the view Walk, which the equations of walks take.
+        Options of the view Walk, which equations of walks use.
     id : int
         Id of the message that is answered.
     """
@@ -74,7 +74,7 @@ def _caveats(document: Document, leg: Live) -> Iterator[str]:
 
 
 def _equation(key: str, line: Line, leg: Live, symbols: dict[str, Quantity]) -> Equation:
-    """Work a line out, and keep what comes out for later lines."""
+    """Evaluate a line, and store its result in `symbols` for later lines."""
     if isinstance(line, Given):
         quantity = Quantity(float(line.number(leg)), line.unit)
         formula = numbers = ours = note = None
@@ -105,7 +105,7 @@ def _within_a_turn(value: float, unit: str) -> float:
 
 
 def _difference(name: str, quantity: Quantity, ours: float) -> str | None:
-    """Tell where the document does not give what Tarsus has: for a knee that is down, or an offset femur axis."""
+    """Return a note with the value of Tarsus if the document's differs, as with the knee down; None if it agrees."""
     apart = quantity.value - ours
     if quantity.unit == "deg":
         apart = math.remainder(apart, 2 * math.pi) if math.isfinite(apart) else apart

@@ -1,4 +1,4 @@
-"""Source 004's torques: the lines of `handbook`, for the robot that is shown."""
+"""Torques of source 004: the lines of `handbook` for the robot that is shown."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ _GIVEN: Mapping[str, str] = {
     "given.L_femur_out": "horizontal length of the femur in stance",
 }
 
-# The line of the hand method that each mistake is in.
+# The line of the hand method in which each erratum is, by the name of the erratum's test.
 _SLIPS: Mapping[str, str] = {
     "test_004_erratum_femur_swing_torque_takes_the_coxas_arm": "swing.femur",
     "test_004_erratum_coxa_inertia": "inertia.coxa",
@@ -49,16 +49,16 @@ _SLIPS: Mapping[str, str] = {
 
 
 def torque_equations(robot: Robot, leg: int, *, feet_down: int) -> list[Equation]:
-    """Return the hand method's lines; none where the robot's masses are unknown or it has not more legs than that.
+    """Return the lines of the hand method; none if the masses are unknown, or no leg would be off the ground.
 
     Parameters
     ----------
     robot : Robot
         A single robot.
     leg : int
-        The leg that stands for all.
+        Index of the leg whose values are used for all legs.
     feet_down : int
-        Number of feet on the ground, one of `FEET_DOWN`; beyond the first, only the lines that depend on it.
+        Number of feet on the ground, one of `FEET_DOWN`; except for the first, only lines that depend on it.
     """
     if not robot.has_masses or robot.legs <= feet_down:
         return []
@@ -89,14 +89,14 @@ def _equation(line: Line, feet_down: int) -> Equation:
 
 
 def torque_slips(robot: Robot, leg: int) -> dict[str, Erratum]:
-    """Return the mistakes in the hand method with this robot's numbers, by the names of their tests.
+    """Return the errata of the hand method with this robot's numbers, by the names of their tests.
 
     Parameters
     ----------
     robot : Robot
         A single robot.
     leg : int
-        The leg that stands for all.
+        Index of the leg whose values are used for all legs.
     """
     if not robot.has_masses:
         return {}
@@ -125,7 +125,7 @@ def _symbol(text: str) -> MathNode:
 
 
 def _node(text: str) -> MathNode | None:
-    """Return a line of the hand method as MathML; its signs are those of print, not of arithmetic."""
+    """Return a line of the hand method as MathML; its signs, such as × and ², are those of print, not of Python."""
     if not text:
         return None
     arithmetic = text.replace("×", "*").replace("²", " ** 2").replace(">", "_at_").replace("Δθ", "Δ_θ")
