@@ -88,7 +88,7 @@ def animate(
         frames.append(film.frame(_sample_at(motion, float(time))).quantize(palette=palette, dither=Dither.NONE))
         if progress is not None:
             progress((number + 1) / len(times))
-    # The last frame stays for a second before the loop restarts.
+    # The last frame is shown for a second before the loop restarts.
     durations = [duration] * (len(frames) - 1) + [1000]
     try:
         frames[0].save(path, format="GIF", save_all=True, append_images=frames[1:], duration=durations, loop=0)
@@ -121,7 +121,7 @@ def frame_times(motion: Motion, *, max_duration: float = MAX_DURATION) -> tuple[
 
 
 def _palette(pictures: Sequence[Image]) -> Image:
-    """Return a palette from some frames, with pure white first: a tinted background would be visible."""
+    """Return a palette from some frames, with pure white added first so that the background is not tinted."""
     from PIL import Image
 
     pixels = np.concatenate([np.asarray(picture).reshape(-1, 3) for picture in pictures])

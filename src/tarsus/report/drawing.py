@@ -25,7 +25,7 @@ _STABLE, _BODY, _SHADOW = "#009E73", "#9aa7b5", "#d4d4d4"
 # Thickness of coxa, femur and tibia relative to the length of a leg.
 _THICKNESS = (0.062, 0.058, 0.036)
 _GROUND, _SOLID = 1.0, 10.0
-# Range of matplotlib's zorder for the depths, on either side of the body's.
+# Range of matplotlib's zorder for depths in front of the body's origin and behind it, each.
 _ORDER = 5.0
 _STEP = 1e-6
 
@@ -44,7 +44,7 @@ class RobotDrawing:
     names : bool
         Whether to label the legs.
     shadows : bool
-        Whether to draw shadows, support polygon and the foot of the centre of mass on the plane z = 0.
+        Whether to draw shadows, support polygon and the projection of the centre of mass onto the plane z = 0.
     """
 
     def __init__(self, axes: Axes, robot: Robot, *, view: View, names: bool = False, shadows: bool = True) -> None:
@@ -129,7 +129,7 @@ class RobotDrawing:
         return self._view.project(points * 1000)
 
     def _zorder(self, points: Float[np.ndarray, "*#batch 3"], sample: Sample) -> Float[np.ndarray, "*batch"]:
-        """Return the zorder of points: nearer points are drawn later, the body's origin is at `_SOLID`."""
+        """Return the zorder of points: `_SOLID` for the body's origin, and more for points nearer to the eye."""
         depth = self._view.depth(points - np.asarray(sample.body.position))
         zorder: np.ndarray = _SOLID + _ORDER * np.clip(depth / (4 * self._reach), -0.99, 0.99)
         return zorder
@@ -148,7 +148,7 @@ class RobotDrawing:
     def _update_legs(self, sample: Sample) -> None:
         projected = self._project(sample.points)
         link_zorder = self._zorder((sample.points[:, 1:] + sample.points[:, :-1]) / 2, sample)
-        # The coxa axis is fixed to the body; ordering the coxa by it avoids flicker.
+        # The coxa is ordered by its axis, which is fixed to the body: this avoids flicker.
         link_zorder[:, 0] = self._zorder(sample.points[:, 0], sample)
         for leg in range(self._robot.legs):
             for link in range(3):

@@ -93,7 +93,7 @@ class Film:
         time = float(self.motion.time[sample_index])
         self._time_line.set_xdata([time, time])
         feet_down = int(sample.contacts.sum())
-        # On terrain there is no support polygon to measure the margin in.
+        # The stability margin is left out on terrain, where contacts at different heights span no support polygon.
         margin = ""
         if self._level:
             distance = f"{sample.margin * 1000:.0f} mm" if math.isfinite(sample.margin) else "none"

@@ -21,7 +21,7 @@ _MAX_LINES = 80
 _COLOUR = "#e3e3e3"
 # Colour of faces in full light.
 _EARTH = np.array([0.93, 0.94, 0.92])
-# Edge of a cell of ground that is not flat [m], and how far beyond the view ground may rise into it [m].
+# Uneven ground: edge of a cell [m], and margin around the view within which ground may rise into the picture [m].
 _CELL, _BEYOND = 0.025, 0.3
 _MOST_CELLS = 40_000
 
@@ -64,14 +64,14 @@ class Ground:
             step *= 2
         relief = relief_of(self._height, low, high, step=step, view=self._view)
         corners = self._view.project(relief.corners * 1000)
-        # Faces out of sight are left out, as most are.
+        # Most faces lie outside the picture, and are left out.
         (left, right), (bottom, top) = self._axes.get_xlim(), self._axes.get_ylim()
         least, most = corners.min(axis=1), corners.max(axis=1)
         seen = (most[:, 0] > left) & (least[:, 0] < right) & (most[:, 1] > bottom) & (least[:, 1] < top)
         colours = np.clip(relief.brightness[seen, None] * _EARTH, 0.0, 1.0)
         self._faces.set_verts(list(corners[seen]))
         self._faces.set_facecolor(colours)
-        # Edges of the same colour close the seams between faces.
+        # Drawing the edges in the colour of their face closes the seams between faces.
         self._faces.set_edgecolor(colours)
 
 

@@ -27,7 +27,7 @@ _SECTIONS = {
 
 
 def handbook_summary(hand: Handbook, comparison: Comparison | None) -> dict[str, Any]:
-    """Return the lines of the calculation and its comparison with statics, with units.
+    """Return the lines of the calculation, and its comparison with statics, with units.
 
     Parameters
     ----------

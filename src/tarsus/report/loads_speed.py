@@ -21,7 +21,7 @@ __all__ = ["plot_torque_speed"]
 def plot_torque_speed(loads: JointLoads) -> Figure:
     """Draw torque over speed for coxa, femur and tibia, with the torque-speed line of the weakest servo.
 
-    Speed is positive in the direction of the torque: on the right the servo drives, on the left it is driven.
+    Speed is positive in the direction of the torque: on the right the servo drives the joint, on the left it is driven.
 
     Parameters
     ----------

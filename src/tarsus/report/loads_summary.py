@@ -20,7 +20,7 @@ from tarsus.robot.robot import JOINTS
 
 __all__ = ["length_advice", "loads_summary", "servos_summary", "worst_of_each"]
 
-# Changes of torque per length below this are not reported [N m/m].
+# Changes of torque per change of link length up to this are not reported [N m/m].
 _NEGLIGIBLE = 0.05
 _STEP = 0.01
 
@@ -37,9 +37,9 @@ def loads_summary(
     supply : SupplyLoad
         Supply current of the same loads.
     compliant : CompliantLoads, optional
-        Compliant statics of the same motion; classes and verdicts are then those of the higher loads.
+        Compliant statics of the same motion; with it, classes and verdicts are those of the higher loads.
     missing : str
-        Why there is none.
+        Why there are no compliant statics.
     """
     document = loads.to_dict()
     decisive = decisive_loads(loads, compliant)
@@ -81,7 +81,7 @@ def loads_summary(
 
 
 def _compliant(compliant: CompliantLoads) -> dict[str, Any]:
-    """Return what compliant statics adds to the loads of the joints."""
+    """Return the results of compliant statics beyond the loads of the joints."""
     saturated = compliant.saturated.any((1, 2)).mean()
     return {
         "carried": compliant.ok,
@@ -93,7 +93,7 @@ def _compliant(compliant: CompliantLoads) -> dict[str, Any]:
 
 
 def _rank(verdict: JointVerdict) -> float:
-    """Return the factor as a sort key, unknown factors first."""
+    """Return the factor as a sort key, with unknown factors first."""
     return -math.inf if math.isnan(verdict.factor) else verdict.factor
 
 
@@ -124,7 +124,7 @@ def servos_summary(sizing: ServoSizing, loads: JointLoads, changes: Sequence[Wal
     loads : JointLoads
         Joint loads of the sizing.
     changes : sequence of WalkChange
-        What would help the robot's servos, from `walk_changes`.
+        Changes of the walk that would relieve the robot's servos, from `walk_changes`.
     """
     return {
         "robot": loads.robot.name,
@@ -196,7 +196,7 @@ def length_advice(sizing: ServoSizing) -> list[str]:
         if np.isnan(row).any():
             advice.append(f"{link}: no result, as a foot is out of reach with another length, or the length is 0")
             continue
-        # The direction in which the largest change reduces the torque.
+        # Longer or shorter: the direction that reduces the torque of the joint with the largest change.
         sign = 1 if float(row[int(np.argmax(np.abs(row)))]) < 0 else -1
         changes = [
             f"{joint} {sign * change * _STEP:+.3f} N m"

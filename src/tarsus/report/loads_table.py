@@ -91,7 +91,7 @@ def load_bar(fraction: float | None, *, width: int = _BAR) -> str:
 
 
 def load_rows(summary: dict[str, Any]) -> list[tuple[str, ...]]:
-    """Return a row of text for each joint, with the columns `LOAD_COLUMNS`; one for all legs where they are alike.
+    """Return a row of text for each joint, with the columns `LOAD_COLUMNS`; one row for all legs where they are equal.
 
     Parameters
     ----------
@@ -107,7 +107,7 @@ def load_rows(summary: dict[str, Any]) -> list[tuple[str, ...]]:
 
 
 def is_worst(row: tuple[str, ...], summary: dict[str, Any]) -> bool:
-    """Return whether a row of `load_rows` is of the joint with the smallest factor of its kind.
+    """Return whether a row of `load_rows` shows the smallest factor of all coxae, femurs or tibiae.
 
     Parameters
     ----------
@@ -138,7 +138,7 @@ def _row(joint: dict[str, Any]) -> tuple[str, ...]:
 
 
 def _factor(joint: dict[str, Any]) -> str:
-    """Return the safety factor as text; a servo that bears nothing has none."""
+    """Return the safety factor as text; a servo without load has none, and it is empty for an unknown servo."""
     if joint["factor"] is None:
         return "" if joint["stall_nm"] is None else "no load"
     return f"{joint['factor']:.2f}"
@@ -148,7 +148,7 @@ def _percent(value: float | None) -> str:
     return "unknown" if value is None else f"{value * 100:.0f} %"
 
 
-# Payloads below this are none [kg].
+# Payloads below this are reported as none [kg].
 _NO_PAYLOAD = 0.005
 _RIGHT = {
     "supply",
@@ -215,7 +215,7 @@ def loads_lines(summary: dict[str, Any]) -> list[str]:
 
 
 def _compliant_lines(summary: dict[str, Any]) -> list[str]:
-    """Return what compliant statics says beyond the torques."""
+    """Return lines on compliant statics: its problems, or why it was not computed."""
     if summary["compliant"] is None:
         return [f"compliant statics: not computed: {summary['compliant_missing']}"]
     return [f"compliant statics: {text}" for text in summary["compliant"]["problems"]]
@@ -274,7 +274,7 @@ def _style(class_name: str) -> str:
 
 
 def change_table(summary: dict[str, Any]) -> Table:
-    """Return a table of the changes of the walk that help the robot's servos, the most effective first.
+    """Return a table of the changes of the walk that relieve the robot's servos, the most effective first.
 
     Parameters
     ----------
@@ -289,7 +289,7 @@ def change_table(summary: dict[str, Any]) -> Table:
 
 
 def candidate_table(summary: dict[str, Any]) -> Table:
-    """Return a table of the sufficient servos, the lightest first: one for all joints, and sets of one bus and supply.
+    """Return a table of sufficient servos, the lightest first: one for all joints, or a set for one bus and supply.
 
     Parameters
     ----------

@@ -14,11 +14,11 @@ if TYPE_CHECKING:
 
 __all__ = ["Relief", "relief_of"]
 
-# How far inside its edges the height of a cell is taken [m], so that a wall belongs to no cell.
+# Distance inside the edges of a cell at which its height is sampled [m], so that no cell contains a wall.
 _INSIDE = 1e-6
-# Least difference of height that is a wall [m].
+# Walls are drawn for differences of height above this, summed over both ends of the edge [m].
 _WALL = 1e-4
-# Direction of the light, from the left above.
+# Direction towards the light in G: backward, left and up.
 _LIGHT = np.array([-0.35, 0.45, 0.82])
 _DARKEST, _BRIGHTEST = 0.55, 1.0
 
@@ -31,7 +31,7 @@ class Relief(NamedTuple):
     corners : array, shape (n, 4, 3)
         Corners of the faces in G [m].
     brightness : array, shape (n,)
-        From 0 to 1.
+        Brightness of the faces, from 0 to 1.
     """
 
     corners: Float[np.ndarray, "n 4 3"]
@@ -59,7 +59,7 @@ def relief_of(
     view : View
         Direction of view, for the order of the faces.
     """
-    # Whole numbers of cells, so that edges are where those of the terrain are, whatever the rectangle.
+    # Edges of cells are at multiples of the step, whatever the rectangle, so that they coincide with those of terrain.
     x, y = (np.arange(np.floor(a / step), np.ceil(b / step) + 1) * step for a, b in zip(low, high, strict=True))
     left, right, near, far = x[:-1] + _INSIDE, x[1:] - _INSIDE, y[:-1] + _INSIDE, y[1:] - _INSIDE
     # Corners of the cells, counter-clockwise seen from above, (columns, rows, 4).
@@ -67,13 +67,13 @@ def relief_of(
     ys = np.stack(np.broadcast_arrays(near, near, far, far), axis=-1)
     xs, ys = np.broadcast_arrays(xs, ys)
     cells = np.stack([xs, ys, np.broadcast_to(height(xs, ys), xs.shape)], axis=-1)
-    # Between neighbours along x: the edge of the one and that of the other; the same along y.
+    # A wall between neighbours along x has the facing edges of both cells; the same along y.
     across = np.stack([cells[:-1, :, 1], cells[:-1, :, 2], cells[1:, :, 3], cells[1:, :, 0]], axis=-2)
     along = np.stack([cells[:, :-1, 3], cells[:, :-1, 2], cells[:, 1:, 1], cells[:, 1:, 0]], axis=-2)
     walls = np.concatenate([across.reshape(-1, 4, 3), along.reshape(-1, 4, 3)])
     jumps = np.abs(walls[:, 0, 2] - walls[:, 3, 2]) + np.abs(walls[:, 1, 2] - walls[:, 2, 2])
     faces = np.concatenate([cells.reshape(-1, 4, 3), walls[jumps > _WALL]])
-    # A wall is in front of the higher cells behind it, and behind the lower ones before it.
+    # Sorted by horizontal position alone, so that a wall is drawn over the cells behind it and under those before it.
     order = np.argsort(view.depth(faces.mean(axis=1) * [1.0, 1.0, 0.0]), kind="stable")
     corners: np.ndarray = faces[order]
     return Relief(corners, _brightness(corners))

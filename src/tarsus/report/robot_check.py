@@ -1,4 +1,4 @@
-"""What `tarsus robots check` finds: missing values, implausible values, and the gaits that are possible."""
+"""Findings of `tarsus robots check`: missing values, implausible values, and the gaits that are possible."""
 
 from __future__ import annotations
 
@@ -80,7 +80,7 @@ def longest_stroke(robot: Robot) -> tuple[float | None, list[str]]:
 
 
 def _own_gait(robot: Robot, trials: tuple[GaitTrial, ...]) -> tuple[GaitTrial | None, list[str]]:
-    """Return the trial of the robot's own gait, and why it fails."""
+    """Return the trial of the robot's own gait, and why it fails; None as the trial where the gait does not exist."""
     possible = ", ".join(trial.gait for trial in trials if trial.possible)
     advice = f"set [gait] name to one that is possible: {possible}" if possible else "no gait is possible"
     try:

@@ -38,7 +38,8 @@ class Sample:
     support : array, shape (k, 3)
         Points that touch the ground, in G [m]; usually the feet in contact.
     margin : float
-        Distance of the centre of mass from the nearest edge of their polygon [m]; minus infinity without a point.
+        Distance of the centre of mass from the nearest edge of the polygon of the support points [m]; minus infinity
+        without a point.
     """
 
     points: Float[np.ndarray, "legs 4 3"]

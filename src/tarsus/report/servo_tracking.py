@@ -32,7 +32,7 @@ def plot_tracking(
     Parameters
     ----------
     robot : Robot
-        Which robot.
+        The robot.
     time : array, shape (n,)
         Times [s].
     sent, measured : array, shape (n, legs, 3)
@@ -40,7 +40,7 @@ def plot_tracking(
     title : str
         Title of the figure.
     fault_time : float, optional
-        When a fault was noticed [s].
+        Time at which a fault was noticed [s].
 
     Returns
     -------

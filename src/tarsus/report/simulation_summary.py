@@ -30,7 +30,7 @@ def simulation_summary(
     Parameters
     ----------
     outcome : Outcome
-        What the robot did.
+        Result of the run.
     planned : (array, shape (3,), array, shape (3,)), optional
         Peak and root mean square torque of coxa, femur and tibia that statics predicts [N m].
     command_problems : sequence of str
@@ -79,7 +79,7 @@ def _finite(value: float) -> float | None:
 
 
 def simulation_table(summary: dict[str, Any]) -> Table:
-    """Return the numbers of a simulated run as a table: what was planned or commanded, and physics.
+    """Return the numbers of a simulated run as a table: as planned or commanded, in physics, and their ratio.
 
     Parameters
     ----------
@@ -114,7 +114,7 @@ def simulation_table(summary: dict[str, Any]) -> Table:
     return table
 
 
-# Torque below which a ratio means nothing [N m].
+# Planned torques below this are too small for a meaningful ratio [N m].
 _SMALL = 1e-3
 
 

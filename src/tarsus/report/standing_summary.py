@@ -28,7 +28,7 @@ NOT_STABLE = "the robot has no stable resting pose with these angles"
 """Problem of a robot that does not come to rest."""
 
 _NO_MASSES = "the robot file gives no masses: the centre of mass is that of the body"
-# Rounding of an angle at its limit [deg].
+# Tolerance for rounding errors of an angle at its limit [deg].
 _ROUNDING = 1e-6
 
 
@@ -124,14 +124,14 @@ class Standing:
 def knee_lines(solution: IKSolution, legs: Sequence[int] | None = None) -> list[str]:
     """Return a line on each range of tibia limits that excludes the knee branch of a solution.
 
-    The angles of these legs are of the other branch.
+    The angles of these legs are those of the other branch.
 
     Parameters
     ----------
     solution : IKSolution
         Solution of one configuration.
     legs : sequence of int, optional
-        The legs that matter. Default: all.
+        Indices of the legs to check. Default: all.
     """
     robot, other = solution.robot, "up" if solution.knee == "down" else "down"
     limits = np.degrees(np.asarray(robot.limits)[:, 2])
@@ -158,7 +158,7 @@ def lines_by_text(robot: Robot, lines: Iterable[tuple[int, str]]) -> list[str]:
     robot : Robot
         A single robot.
     lines : iterable of (int, str)
-        Index of a leg, and text on it.
+        Index of a leg, and a text on this leg.
     """
     groups: dict[str, list[str]] = {}
     for leg, text in lines:
@@ -223,7 +223,7 @@ def limit_lines(robot: Robot, degrees: Float[np.ndarray, "legs 3"], legs: Sequen
     degrees : array, shape (legs, 3)
         Joint angles [deg].
     legs : sequence of int
-        The legs that matter.
+        Indices of the legs to check.
     """
     limits = np.degrees(np.asarray(robot.limits))
     outside = (degrees < limits[..., 0] - _ROUNDING) | (degrees > limits[..., 1] + _ROUNDING)

@@ -44,9 +44,9 @@ WARNING = "#b00020"
 """Limits and faults."""
 
 SEVERITY_COLOURS = {"good": "#17703c", "warning": "#875400", "bad": "#b3121f"}
-"""Colours of `tarsus.load.verdict.severity_of`: those of the studio in its light theme."""
+"""Colours of the severities of `tarsus.load.verdict.severity_of`: those of the studio in its light theme."""
 
-# Colours of Okabe and Ito, and two of Tol for robots with more legs: cool on the left, warm on the right.
+# Colours by Okabe and Ito, and two by Tol for robots with more legs: cool on the left side, warm on the right.
 _LEFT = ("#0072B2", "#56B4E9", "#009E73", "#332288")
 _RIGHT = ("#D55E00", "#E69F00", "#CC79A7", "#882255")
 _MAX_POINTS = 4000
@@ -79,7 +79,7 @@ def new_figure(*, width: float, height: float, dpi: int = 130, manual_layout: bo
     dpi : int
         Pixels per inch.
     manual_layout : bool
-        Whether the caller places the axes; else they are placed so that no label is cut off.
+        Whether the caller places the axes; otherwise they are placed so that no label is cut off.
 
     Raises
     ------

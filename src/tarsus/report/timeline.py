@@ -18,7 +18,7 @@ __all__ = ["plot_timeline"]
 
 _ACTUAL, _OTHER = "#0072B2", "#D55E00"
 _SHADE, _LIMITED = "#e9e9e9", "#f6d58a"
-# Width of the panels, and of a character of their labels [inches].
+# Width of the panels, and width of a character of their labels [inches].
 _WIDTH, _CHARACTER_WIDTH = 9.6, 0.062
 _MAX_LABEL = 44
 
@@ -89,7 +89,7 @@ def _of(recording: Recording, *kinds: str) -> list[Event]:
 
 
 def _rows(recording: Recording) -> list[tuple[Event, int, str]]:
-    """Return the labels, each with the first row that has space for it."""
+    """Return an entry for each label: its event, the first row that has space for it, and its text."""
     scale = recording.motion.duration / _WIDTH
     ends: list[float] = []
     labels = []
@@ -204,7 +204,7 @@ def _draw_body(axes: Axes, recording: Recording) -> None:
 
 
 def _draw_feet(axes: Axes, recording: Recording) -> None:
-    """Draw the height of each stance foot over the ground at the start."""
+    """Draw the height of each stance foot, relative to the ground at the start."""
     motion, shown = recording.motion, decimation(recording.motion)
     in_stance, colours = motion.contacts & recording.upright[:, None], leg_colours(motion.robot)
     height = np.where(in_stance, motion.feet[..., 2] * 1000, np.nan)

@@ -1,4 +1,4 @@
-"""Video files: MP4 by way of FFmpeg, which the package imageio-ffmpeg brings along."""
+"""Video files: MP4 by FFmpeg, which the package imageio-ffmpeg contains."""
 
 from __future__ import annotations
 
@@ -29,11 +29,11 @@ def write_video(
     pictures : iterable of Image
         The frames, of the same even width and height.
     path : path
-        Where to write it.
+        Output file.
     rate : float
         Frames per second [1/s].
     number : int
-        How many frames there are, for the progress.
+        Number of frames, for the progress.
     progress : callable, optional
         Called after every frame with the completed fraction, up to 1.
 

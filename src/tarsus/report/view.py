@@ -52,7 +52,7 @@ class View:
         return projected
 
     def depth(self, points: Float[np.ndarray, "*#batch 3"]) -> Float[Array, "*batch"]:
-        """Return the depth of points ``(..., 3)`` towards the eye ``(...)``; points with a larger depth are in front.
+        """Return the depth ``(...)`` of points ``(..., 3)``, measured towards the eye: a larger depth is in front.
 
         Parameters
         ----------

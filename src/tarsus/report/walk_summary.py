@@ -95,7 +95,7 @@ def _joint_speed(motion: Motion, joint: int) -> dict[str, Any]:
     fastest = np.abs(motion.joint_speed[:, :, joint]).max(0)
     leg = int(np.argmax(fastest))
     ratio = motion.speed_ratio[:, joint]
-    # With different servos, the leg with the largest ratio is not always the fastest.
+    # Where servos differ, the leg with the largest ratio is not always the fastest.
     critical = int(np.argmax(ratio))
     servo = motion.robot.servos[critical][joint]
     limit = math.degrees(joint_limits(motion.robot).speed[critical, joint])
