@@ -20,7 +20,7 @@ _AGAIN = 20
 
 
 class _Terminal:
-    """A dialogue in a terminal: one line for each answer; beside a JSON document it is on standard error."""
+    """A dialogue in a terminal, with a line for each answer; it is on standard error if a JSON document is printed."""
 
     def __init__(self, *, beside: bool = False) -> None:
         self._beside = beside
@@ -102,7 +102,7 @@ def bring_up(
 
 
 def _unknown(path: Path) -> str:
-    """Return how many joints of a calibration are not complete, in words."""
+    """Return a sentence on how many joints of a calibration are not complete, or that none was saved."""
     from tarsus.hardware.calibration.calibration import Calibration
 
     return f"{len(Calibration.load(path).missing)} joints are not complete." if path.exists() else "nothing was saved."

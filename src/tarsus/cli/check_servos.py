@@ -52,7 +52,7 @@ def check_servos(calibration: Path, port: str | None, move: bool, emulated: bool
         if emulated:
             robot = stack.enter_context(EmulatedRobot(found, np.asarray(found.limits).mean(axis=-1)))
             found, opener = robot.calibration, robot.open
-        # Servos are released at its end, whatever ends it.
+        # Closing the generator of the findings releases the servos, also where the loop ends early.
         for finding in stack.enter_context(contextlib.closing(findings_of(found, move=move, open_port=opener))):
             findings.append(finding)
             if not as_json:

@@ -80,7 +80,7 @@ def drive(
 
 
 def _loads(recording: Recording) -> JointLoads | None:
-    """Return the loads of the longest stretch in which the body is off the ground, where masses are known."""
+    """Return the loads of the longest interval in which the body is off the ground; None where they are unknown."""
     from tarsus.load.loads import joint_loads
 
     longest = recording.longest_standing
@@ -88,7 +88,7 @@ def _loads(recording: Recording) -> JointLoads | None:
 
 
 def _load_numbers(found: JointLoads | None) -> dict[str, Any] | None:
-    """Return each kind of joint's greatest torque, and its factor where the servo is known."""
+    """Return the peak torque and the safety factor of the most critical coxa, femur and tibia; None without loads."""
     if found is None:
         return None
     from tarsus.load.verdict import joint_verdicts

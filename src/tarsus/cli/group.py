@@ -24,7 +24,7 @@ class TarsusGroup(click.Group):
     def main(self, args: Sequence[str] | None = None, *rest: Any, **extra: Any) -> NoReturn:
         """Run a command and exit."""
         arguments = list(sys.argv[1:] if args is None else args)
-        # An earlier option may be malformed, so that --json is not parsed; look for it here.
+        # Looked for here, as an option before --json may be malformed, so that --json is never parsed.
         as_json = "--json" in arguments
         extra["standalone_mode"] = False
         try:

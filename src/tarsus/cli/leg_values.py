@@ -1,4 +1,4 @@
-"""Three numbers for each leg from the command line: as arguments, the same for every leg, or from a file."""
+"""Three numbers for each leg from the command line: as arguments, as one triple for every leg, or from a file."""
 
 from __future__ import annotations
 
@@ -26,12 +26,12 @@ _MOST = 1e6
 
 @dataclass(frozen=True)
 class LegValues:
-    """What three numbers of each leg are.
+    """Description of the three numbers of a leg.
 
     Attributes
     ----------
     noun, kind : str
-        In messages: the three numbers, and one of them.
+        Words for the three numbers, and for one of them, in messages.
     of : tuple of str
         Names of the three numbers.
     unit : str
@@ -89,7 +89,7 @@ def read_leg_values(
     robot : Robot
         The robot.
     what : LegValues
-        What the numbers are.
+        Description of the numbers.
     arguments : tuple of str
         Positional arguments of the command.
     same_for_all : tuple of float, optional
@@ -97,7 +97,7 @@ def read_leg_values(
     file : Path, optional
         JSON file with the numbers.
     leg : int, optional
-        The leg that the numbers are of; its three numbers are returned for every leg.
+        Index of the one leg to which the numbers belong; they are returned for every leg.
 
     Returns
     -------

@@ -53,7 +53,7 @@ def file_name(name: str) -> str:
 
 
 def write_new(path: Path, text: str) -> None:
-    """Write a text file; one that exists already is not overwritten, but a wrong use of the command."""
+    """Write a text file; a file that exists already is not overwritten, but reported as a usage error."""
     try:
         with path.open("x", encoding="utf-8", newline="\n") as file:
             file.write(text)
@@ -72,12 +72,12 @@ def show(*items: RenderableType) -> None:
     if not console.is_terminal and "COLUMNS" not in os.environ:
         console.width = _PIPE_WIDTH
     for item in items:
-        # The terminal folds sentences, so that they can be copied and searched.
+        # Sentences are not folded here but by the terminal, so that they can be copied and searched.
         console.print(item, soft_wrap=isinstance(item, str | Text))
 
 
 class Progress(Protocol):
-    """Callback for the current activity and the completed fraction."""
+    """Callback that takes the current activity and the completed fraction."""
 
     def __call__(self, activity: str, fraction: float, /) -> None:
         """Show the progress."""

@@ -24,7 +24,7 @@ __all__ = ["calibration_of", "pose_pulses", "pulse_table", "pulses_option", "wal
 
 _F = TypeVar("_F", bound=Callable[..., Any])
 _TABLE, _HEADER = "pulses.csv", "gait_cycle.h"
-# Lengths in cycles that are tried until a walk has a constant speed in its middle.
+# Lengths of walks [cycles] that are tried in turn until one has a constant speed in its middle.
 _CYCLES = (8, 16, 32)
 
 
@@ -34,7 +34,7 @@ def pulses_option(text: str) -> Callable[[_F], _F]:
     Parameters
     ----------
     text : str
-        What it writes, for the help.
+        Help text, which says what the option writes.
     """
     return click.option("--pulses", type=click.Path(path_type=Path), metavar="CALIBRATION", help=text)
 
@@ -56,7 +56,7 @@ def walk_pulses(motion: Motion, options: dict[str, Any], calibration: Path, fold
     Raises
     ------
     TarsusError
-        If the calibration is wrong or incomplete, or the walk leaves its limits.
+        If the calibration is wrong or incomplete, the walk exceeds its limits, or a file can't be written.
     """
     from tarsus.hardware.pulses.gait_cycle import gait_cycle_header
     from tarsus.hardware.pulses.table import write_pulses
@@ -88,7 +88,7 @@ def pose_pulses(solution: IKSolution, calibration: Path, folder: Path) -> tuple[
     Raises
     ------
     TarsusError
-        If the calibration is wrong or incomplete, or the pose leaves its limits.
+        If the calibration is wrong or incomplete, the pose exceeds its limits, or the file can't be written.
     """
     import numpy as np
 
@@ -151,7 +151,7 @@ def pulse_table(calibration: Calibration, commands: list[list[int]]) -> Table:
 
 
 def _steady_cycle(motion: Motion, options: dict[str, Any]) -> GaitCycle:
-    """Return a cycle of the walk at constant speed, from a longer walk of the same kind where it is too short."""
+    """Return a cycle of the walk at constant speed; for a walk that is too short, of a longer walk of the same kind."""
     from tarsus.cli.planning import DISTANCE, plan
     from tarsus.hardware.pulses.gait_cycle import gait_cycle
 

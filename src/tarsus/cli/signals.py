@@ -1,4 +1,4 @@
-"""Signals that end a program: each as Ctrl-C, so that servos are released."""
+"""Signals that end a program: each is handled as Ctrl-C, so that servos are released."""
 
 from __future__ import annotations
 
@@ -18,9 +18,9 @@ _OUTPUTS = (1, 2)
 
 @contextlib.contextmanager
 def as_interrupts() -> Iterator[None]:
-    """Treat a closed terminal and a request to end as Ctrl-C.
+    """Treat a closed terminal (SIGHUP) and a request to end (SIGTERM) as Ctrl-C.
 
-    What is written to a terminal that was closed is thrown away, as writing to it would be an error.
+    Output to a closed terminal is discarded afterwards, as writing to it would be an error.
     """
     if threading.current_thread() is not threading.main_thread():
         yield
@@ -43,7 +43,7 @@ def as_interrupts() -> Iterator[None]:
 def _leave_terminal() -> None:
     nothing = os.open(os.devnull, os.O_WRONLY)
     for output in _OUTPUTS:
-        # Files and pipes still take what is written.
+        # Only terminals are replaced: files and pipes still take output.
         with contextlib.suppress(OSError):
             if stat.S_ISCHR(os.fstat(output).st_mode):
                 os.dup2(nothing, output)

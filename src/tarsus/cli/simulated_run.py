@@ -1,4 +1,4 @@
-"""Runs of `tarsus simulate`: a planned walk or a scenario on a simulated plant, and the files of it."""
+"""Runs of `tarsus simulate`: a planned walk or a scenario on a simulated plant, and the files of the run."""
 
 from __future__ import annotations
 
@@ -45,17 +45,17 @@ class SimulatedRun:
     Attributes
     ----------
     motion : Motion
-        What was planned, or commanded by the controller.
+        The motion that was planned, or commanded by the controller.
     plant : SimulatedPlant
-        The plant, at the end.
+        The plant, in its state at the end.
     trace : Trace
-        What the robot did.
+        What the robot did over time.
     outcome : Outcome
-        The same in numbers.
+        Summary of the trace in numbers.
     planned : (array, shape (3,), array, shape (3,)), optional
         Peak and root mean square torque of coxa, femur and tibia that statics predicts [N m].
     assumed : tuple of str
-        What plan, model and servos assume.
+        Assumptions of plan, model and servos, a line each.
     command_problems : tuple of str
         Commands of a scenario that were not met in full, and interventions of the guard, a line each.
     """
@@ -118,12 +118,12 @@ def run_timeline(
     scenario : str
         Path of a scenario file, or a timeline.
     robot, options, settings, progress
-        As for `run_plan`; no option of a walk may be given but the compensation.
+        As for `run_plan`; of the options, only the rate and the compensation may be given.
 
     Raises
     ------
     UsageError
-        If an option of a walk is given, too.
+        If another option of a walk is given.
     TarsusError
         If the scenario can't be run.
     """
@@ -198,7 +198,7 @@ def write_run(
 
 
 def _springs(robot: Robot, servos: str) -> JointSprings | None:
-    """Return the springs of ideal servos; None for those of the robot's own."""
+    """Return the joint springs of ideal servos; None for those of the robot's own servos."""
     return JointSprings.uniform(robot, ServoModel.ideal(robot).stiffness) if servos == "ideal" else None
 
 

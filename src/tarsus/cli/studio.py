@@ -74,7 +74,7 @@ def studio(
         raise click.UsageError("--public and --token exclude each other")
     if token is None and not public and not is_loopback(host):
         token = Settings.new_token()
-    # A check must not fail because a studio is already running.
+    # A check selects any free port, so that it does not fail because a studio is already running.
     chosen_port = port if port is not None else 0 if check else _PORT
     chosen, own = _robot(robot, calibration)
     settings = Settings(
@@ -97,7 +97,7 @@ def studio(
 
 
 def _robot(name: str | None, calibration: Path | None) -> tuple[Robot, Path | None]:
-    """Return the robot that is named, else that of the calibration, and its file where it is no preset."""
+    """Return the named robot, else that of the calibration, else the default; and its file where it is no preset."""
     from tarsus.cli.pulses import calibration_of
     from tarsus.hardware.calibration.calibration import Calibration
     from tarsus.robot.file import load_robot

@@ -29,7 +29,7 @@ def timeline_of(text: str, rate: float | None) -> Scenario:
     """
     if not text.strip():
         raise InputError("the scenario is empty; give a TOML file, or commands such as 'at 0 s: walk 50 mm/s'")
-    # A file name is not expected to begin with "at ".
+    # Text that begins with "at " is a timeline, unless a file has that name.
     is_timeline = text.lstrip().startswith("at ") and not os.path.isfile(text)
     found = scenario_from_text(text) if is_timeline else load_scenario(text)
     return found if rate is None else dataclasses.replace(found, rate=rate)

@@ -28,7 +28,7 @@ def require_screen() -> None:
 
 
 def replay(found: SimulatedRun) -> None:
-    """Show a run in real time, again and again, until the window is closed.
+    """Show a run repeatedly, in real time, until the window is closed.
 
     Parameters
     ----------

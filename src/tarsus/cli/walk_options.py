@@ -22,7 +22,7 @@ def walk_options(function: _F) -> _F:
 
 
 def compensate_option(function: _F) -> _F:
-    """Add the option for commands that compensate for the deflection of the joints."""
+    """Add the option that commands compensate for the deflection of the joints."""
     return click.option(
         "--compensate",
         is_flag=True,

@@ -40,7 +40,7 @@ def new(robot: str, bus: str | None, port: str, nominal: bool, out: Path | None,
     from tarsus.robot.preset_names import preset_names
 
     path = out or Path(f"{Path(robot).stem}.calibration.toml")
-    # The robot file is found from the folder of the calibration.
+    # A calibration refers to its robot file relative to its own folder.
     written = robot if robot in preset_names() else os.path.relpath(robot, path.parent)
     make = nominal_calibration if nominal else new_calibration
     made = make(load_robot(robot), written, kind=bus, port=port)

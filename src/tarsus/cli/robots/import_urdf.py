@@ -76,7 +76,7 @@ def import_urdf(
 
 
 def _lines(found: ImportedRobot) -> list[str]:
-    """Return what is said of an imported robot."""
+    """Return the lines that describe an imported robot: legs, remarks, conversions of angles."""
     robot = found.robot
     differ = f"foot points differ from those of the URDF file by at most {1000 * found.deviation:.3f} mm"
     return [
@@ -88,7 +88,7 @@ def _lines(found: ImportedRobot) -> list[str]:
 
 
 def _conversions(found: ImportedRobot) -> list[str]:
-    """Return how the angles of the URDF file become those of the robot file, equal legs together."""
+    """Return lines on how angles of the URDF file become those of the robot file; equal legs share a line."""
     from tarsus.robot.robot import JOINTS
 
     by_text: dict[str, list[str]] = {}

@@ -20,13 +20,13 @@ def write_figures(robot: Robot, recording: Recording | None, servos: bool, out: 
     Parameters
     ----------
     robot : Robot
-        Which robot.
+        The robot.
     recording : Recording or None
         The run; None where a fault ended it.
     servos : bool
         Whether telemetry of servos was recorded.
     out : Path
-        The folder.
+        Existing folder.
 
     Raises
     ------

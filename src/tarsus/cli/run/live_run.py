@@ -1,4 +1,4 @@
-"""What `tarsus run` does: makes plant, controller and source of commands, runs them, and records."""
+"""The work of `tarsus run`: it makes plant, controller and source of commands, runs them, and records the run."""
 
 from __future__ import annotations
 
@@ -42,9 +42,9 @@ from tarsus.scenario.scenario import Scenario
 __all__ = ["perform"]
 
 _DEMO = "at 0 s: walk 60 mm/s; at 2 s: walk turn 20 deg/s; at 3 s: stop"
-# Ticks per second in physics [1/s].
+# Least and greatest number of ticks per second in physics [1/s].
 _SLOWEST, _FASTEST = 20.0, 500.0
-# Greatest speeds for keys and gamepads [m/s, m/s, rad/s].
+# Greatest twist by keys and gamepads: forward, sideways and turning [m/s, m/s, rad/s].
 _SPEEDS = (0.06, 0.05, 0.4)
 _REAL, _EMULATED, _SIMULATED = "real", "emulated", "simulated"
 
@@ -61,7 +61,7 @@ def perform(robot: str, options: dict[str, Any], *, out: Path | None, quiet: boo
     out : Path, optional
         Existing folder for the records.
     quiet : bool
-        Whether nothing is shown meanwhile.
+        Whether nothing is shown during the run.
 
     Raises
     ------
@@ -112,7 +112,7 @@ def perform(robot: str, options: dict[str, Any], *, out: Path | None, quiet: boo
 
 
 def _bus(options: dict[str, Any]) -> tuple[str, str]:
-    """Return where the robot is, and the kind of its emulated bus."""
+    """Return whether the robot is real, emulated or simulated, and the kind of its emulated bus, empty if not given."""
     where, _, kind = (options["bus"] or (_REAL if options["calibration"] else _EMULATED)).partition(":")
     if where not in (_REAL, _EMULATED, _SIMULATED):
         raise InputError(f"--bus {options['bus']}: it must be real, emulated, emulated:KIND or simulated")
@@ -134,7 +134,7 @@ def _each_of(observers: Sequence[Callable[[TickRecord], None]]) -> Callable[[Tic
 
 
 def _rate(asked: float | None, plant: ServoPlant, usual: float) -> float:
-    """Return the ticks per second [1/s]: those asked for, or the usual ones if the wires carry them with a reserve."""
+    """Return the ticks per second [1/s]: as asked, else as usual but at most what the wires carry with a reserve."""
     greatest, least = plant.greatest_rate, 1.0 / plant.settings.longest_tick
     if asked is None:
         found = min(usual, float(np.floor(plant.usual_rate)))
@@ -150,7 +150,7 @@ def _rate(asked: float | None, plant: ServoPlant, usual: float) -> float:
 
 
 def _within(rate: float, least: float, greatest: float, most: str) -> float:
-    """Return a rate; refuse one that is out of its range, whose end the text describes."""
+    """Return a rate [1/s] if it is in its range, else raise an error; `most` describes the upper end of the range."""
     if not least <= rate <= greatest:
         raise InputError(
             f"--rate is {rate:g} Hz; it must be from {least:g} Hz, below which joints are slowed down, to {most}"
@@ -184,7 +184,7 @@ def _run(
 
 
 def _limited(source: CommandSource, duration: float | None) -> CommandSource:
-    """Return a source that is over after a time."""
+    """Return a source of commands that is over after a duration at the latest."""
     if duration is None:
         return source
     end = duration
@@ -211,7 +211,7 @@ def _calibration(name: str, robot: Robot, options: dict[str, Any], where: str, k
     elif where == _REAL:
         raise InputError("a real robot needs its calibration: --calibration FILE; tarsus bring-up makes one")
     else:
-        # Without servos of a bus in the robot file, such that measure their positions show more.
+        # Where the robot's servos are unknown or measure no positions, bus servos are emulated: they show more.
         usual = usual_bus(robot.servos[0][0])
         found = nominal_calibration(robot, name, kind=kind or (usual.name if usual.feedback else "feetech-sts"))
     if options["port"]:
@@ -245,7 +245,7 @@ def _source(
 
 
 def _simulated(robot: Robot, options: dict[str, Any], *, out: Path | None) -> dict[str, Any]:
-    """Run in physics, as fast as that is."""
+    """Run in physics, as fast as the computer simulates it."""
     from tarsus.simulation.simulated_plant import SimulatedPlant
 
     if options["keys"] or options["gamepad"] or options["studio"]:

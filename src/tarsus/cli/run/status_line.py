@@ -1,4 +1,4 @@
-"""The line that shows a run while it runs, and its totals."""
+"""The terminal line that shows the progress of a run, and the totals of the run."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from tarsus.hardware.plant.tick_record import TickRecord
 
 __all__ = ["StatusLine"]
 
-# How often the line is written [s]; writing takes less than a millisecond.
+# Interval at which the line is written [s]; writing takes less than a millisecond.
 _INTERVAL = 0.25
 
 
@@ -33,9 +33,9 @@ class StatusLine:
     Attributes
     ----------
     plant : ServoPlant or None
-        What is shown.
+        The plant whose timing is shown; None until it is set.
     timing : Timing or None
-        How well the ticks of the walk were kept, before the robot sat down.
+        How punctual the ticks of the run were, without those in which the robot sits down at the end.
     """
 
     def __init__(self, *, quiet: bool) -> None:
@@ -55,29 +55,29 @@ class StatusLine:
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
-        """End the line."""
+        """End the line in the terminal."""
         if not self._quiet and self._shown >= 0:
             self._put("\n")
 
     def say(self, text: str) -> None:
-        """Write a line of its own."""
+        """Write a text as a line of its own."""
         if not self._quiet:
             self._put(f"{text}\n")
 
     @property
     def tracking(self) -> dict[str, float] | None:
-        """Root mean square and greatest difference of commanded and measured angles [deg]; None where not measured."""
+        """RMS and greatest difference of commanded and measured angles [deg]; None where nothing was measured."""
         if not self._count:
             return None
         return {"rms": float(np.degrees(np.sqrt(self._squares / self._count))), "worst": float(np.degrees(self._worst))}
 
     def observer(self, write: Callable[[TickRecord], None] | None) -> Callable[[TickRecord], None]:
-        """Return what takes the records of the plant.
+        """Return an observer of the plant, which keeps the totals of its records.
 
         Parameters
         ----------
         write : callable, optional
-            Takes them, too.
+            Another observer, to which every record is passed on.
         """
 
         def observe(record: TickRecord) -> None:
@@ -99,7 +99,7 @@ class StatusLine:
         Parameters
         ----------
         source : CommandSource
-            What gives the commands.
+            The source whose commands are passed on.
         """
         line = self
 
@@ -145,5 +145,5 @@ class StatusLine:
             sys.stderr.write(text)
             sys.stderr.flush()
         except OSError:
-            # A robot does not stop because its terminal was closed: the signal of that makes it sit down.
+            # A closed terminal must not end the run by an exception: its signal makes the robot sit down.
             self._quiet = True

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 __all__ = ["driven_from_studio"]
 
-# Frames per second; the loop of the run shares the interpreter with the server.
+# Frames per second [1/s]; fewer than usual, as the loop of the run shares the interpreter with the server.
 _FRAME_RATE = 30.0
 
 
@@ -37,7 +37,7 @@ def driven_from_studio(
     address : str
         Host and port: ``"127.0.0.1:8600"``.
     bus : str
-        What executes the angles.
+        Name of what executes the angles, shown to visitors.
 
     Raises
     ------
