@@ -211,7 +211,7 @@ def _calibration(name: str, robot: Robot, options: dict[str, Any], where: str, k
     elif where == _REAL:
         raise InputError("a real robot needs its calibration: --calibration FILE; tarsus bring-up makes one")
     else:
-        # Where the robot's servos are unknown or measure no positions, bus servos are emulated: they show more.
+        # Where the first servo is unknown or does not measure its position, bus servos are emulated: they show more.
         usual = usual_bus(robot.servos[0][0])
         found = nominal_calibration(robot, name, kind=kind or (usual.name if usual.feedback else "feetech-sts"))
     if options["port"]:
