@@ -49,8 +49,8 @@ class Scenario:
     body_height, swing_height : float, optional
         Of the stance it starts in or gets up to [m]; the robot's own where left out.
     levelling : {"", "level", "between", "follow", "none"}
-        On ground that it feels is not level, the body stays level, as where left out, follows the slope, is between
-        the two, or is left to it.
+        Attitude of the body on sloping ground that it feels: level (also where left out), halfway between level and the
+        slope, along the slope, or not controlled.
     admittance : Admittance, optional
         How feet give way to the forces on them; left out, they don't.
 

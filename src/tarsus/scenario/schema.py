@@ -132,7 +132,7 @@ _SETTINGS: dict[str, Any] = {
     **{each.key: _number(each) for each in NUMBERS},
     "levelling": (
         Annotated[str | None, Choice(LEVELLINGS)],
-        Field(default=None, description="Body attitude on ground that is not level: level, or parallel to it."),
+        Field(default=None, description="Body attitude on slopes: level, halfway, along the slope, or not controlled."),
     ),
     "admittance": (
         GivingWay | None,

@@ -73,7 +73,7 @@ class Defines:
             if depth > _DEEPEST:
                 raise ValueError
             with warnings.catch_warnings():
-                # Python warns of text that it only just accepts, such as "1or 2"; the user cannot do anything about that.
+                # Python warns of text that it only just accepts, such as "1or 2": not of use to the caller.
                 warnings.simplefilter("ignore")
                 parsed = ast.parse(text.strip() or "?", mode="eval")
             return self._value(parsed.body, depth)
