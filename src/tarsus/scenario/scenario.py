@@ -24,24 +24,24 @@ _MOST_TICKS = 1_000_000
 @represented()
 @dataclass(frozen=True)
 class Scenario:
-    """What a robot is told over time.
+    """Commands to a robot over time, and the state and settings with which it starts.
 
     Attributes
     ----------
     commands : tuple of Command
         In the order of their times; those of the same time in the order given.
     name : str
-        What the scenario is called.
+        Name of the scenario.
     robot : str
         A robot's name, or the path of its file; empty where any robot will do.
     rate : float
         Ticks per second [1/s].
     jitter : float
-        By how much a tick may be longer or shorter, at random [s].
+        Greatest random change of the length of a tick [s].
     seed : int
-        Of what is random.
+        Seed of the random jitter.
     start : {"standing", "sitting", "folded"}
-        How the robot is found.
+        State of the robot at the start.
     duration : float, optional
         How long it takes [s]. Left out: until 2 s after the last command, and until what that began is over.
     gait : str
@@ -52,7 +52,7 @@ class Scenario:
         Attitude of the body on sloping ground that it feels: level (also where left out), halfway between level and the
         slope, along the slope, or not controlled.
     admittance : Admittance, optional
-        How feet give way to the forces on them; left out, they don't.
+        How feet yield to the forces on them; left out, they do not.
 
     Raises
     ------

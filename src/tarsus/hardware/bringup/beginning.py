@@ -46,7 +46,7 @@ def begin(
     path : Path
         The calibration file.
     dialogue : Dialogue
-        Who answers.
+        Who answers the questions.
     kind : str, optional
         Kind of the servo bus; left out, it is asked for.
     port : str, optional

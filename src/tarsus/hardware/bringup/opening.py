@@ -48,7 +48,7 @@ def bring_up_of(
     path : Path
         Where it is saved after every answer.
     dialogue : Dialogue
-        Who answers.
+        Who answers the questions.
     emulated : EmulatedMachine, optional
         Emulated servos, instead of those on the ports of this machine.
     clock : Clock, optional

@@ -23,7 +23,7 @@ class Progress:
     path : Path
         Where it is saved after every answer.
     dialogue : Dialogue
-        Who answers.
+        Who answers the questions.
 
     Attributes
     ----------
@@ -32,7 +32,7 @@ class Progress:
     blank : Calibration
         What it was before the first answer.
     ask : Dialogue
-        Who answers.
+        Who answers the questions.
     """
 
     def __init__(self, calibration: Calibration, path: Path, dialogue: Dialogue) -> None:

@@ -30,7 +30,7 @@ class BringUp:
     path : Path
         Where it is saved after every answer.
     dialogue : Dialogue
-        Who answers.
+        Who answers the questions.
     open_bus : callable
         Opens the bus that settings describe.
     ports : callable

@@ -13,7 +13,7 @@ __all__ = ["Capabilities"]
 @represented()
 @dataclass(frozen=True, kw_only=True)
 class Capabilities:
-    """What a bus can do; the methods of a bus do nothing where it says that it can't.
+    """What a bus can do; methods for what a bus cannot do have no effect.
 
     Attributes
     ----------

@@ -48,8 +48,9 @@ _UNKNOWN = 0.02
 class ServoPlant:
     """Executes joint angles with servos: a `Plant`.
 
-    What is sent is within the limits of the calibration, and no faster than the joints: whatever comes in. A fault
-    ends the run with `ServoFaultError`; `stop` then sits down before the servos are released, unless they can't.
+    Whatever angles come in, those sent are within the limits of the calibration, and no faster than the joints may
+    move. A fault ends the run with `ServoFaultError`; `stop` then sits down before the servos are released, unless the
+    servos can't move any more.
 
     Parameters
     ----------

@@ -43,9 +43,9 @@ class PlantSettings:
     warm, hot : float
         Temperatures from which the robot walks slower, and at which it sits down [deg C].
     heavy_load : float
-        Share of the full drive that is too much for longer than `heavy_time`.
+        Share of the full drive above which a load is too great if it lasts for longer than `heavy_time`.
     heavy_time : float
-        See `heavy_load` [s].
+        How long a load may be above `heavy_load` [s].
     low_time : float
         How long the voltage may be below its least value [s].
     brown_out : float
