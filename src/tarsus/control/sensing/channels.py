@@ -137,8 +137,9 @@ class _AngularRateChannel(_Channel):
 
     def read(self, value: Any, rejected: list[str]) -> Vector | None:
         """Return the reading if it is accepted; the reason for a rejection is appended to `rejected`."""
-        reading = as_vector(value)
-        return self._accepted(0, reading if all(map(math.isfinite, reading)) else "not three finite numbers", rejected)
+        items = as_items(value, (3,))
+        reading, wrong = as_vector(items), "not finite numbers" if items else "expected three numbers"
+        return self._accepted(0, reading if all(map(math.isfinite, reading)) else wrong, rejected)
 
 
 class _GroundChannel(_Channel):

@@ -23,7 +23,8 @@ _Ages: TypeAlias = tuple[Vector, ...] | None
 
 _NO_READINGS, _NONE = ValidReadings(), frozenset[int]()
 _VALUES, _JOINT_ANGLES = attrgetter(*CHANNELS), CHANNELS.index("joint_angles")
-_BAD_AGE = "age is not a number >= 0 s, nor one for each joint"
+# What is wrong with an age that is no number; the rest for a channel whose joints may have an age each.
+_BAD_AGE, _NOR_EACH = "age is not a number >= 0 s", ", nor one for each joint"
 
 
 class ReadingsValidator:
@@ -67,7 +68,7 @@ class ReadingsValidator:
             return ValidReadings(rejected=(problem,))
         rejected, values = list[str](), list(_VALUES(readings))
         for index, name in enumerate(CHANNELS if ages else ()):
-            if values[index] is not None and (stale := _stale(name, ages.get(name, 0.0), most)):
+            if values[index] is not None and (stale := _stale(name, ages.get(name, 0.0), most, _NOR_EACH)):
                 rejected.append(stale)
                 self._channels[index].reset()
                 values[index] = None
@@ -135,8 +136,8 @@ def _oldest(ages: Iterable[float]) -> float:
     return max(known) if all(age >= 0.0 for age in known) else math.nan
 
 
-def _stale(name: str, age: float, most: float) -> str:
-    """Return what is wrong with an age; "" if it is from 0 to the greatest one."""
+def _stale(name: str, age: float, most: float, ending: str = "") -> str:
+    """Return what is wrong with an age, where `ending` goes with one that is no number; "" if it is at most `most`."""
     if 0.0 <= age <= most:
         return ""
-    return f"{name}: older than {1e3 * most:.3g} ms" if age > 0 else f"{name}: {_BAD_AGE}"
+    return f"{name}: older than {1e3 * most:.3g} ms" if age > 0 else f"{name}: {_BAD_AGE}{ending}"
