@@ -107,6 +107,36 @@ def test_holes_and_edges_are_smaller_for_short_legs():
     assert back.real < 0 < pace < 1
 
 
+def test_a_foot_that_has_stepped_back_searches_anew_and_less_deep():
+    # After a long search at the end of its reach, the foot comes down at its next place.
+    missing = stepped(MissingGround(NAMES), [(0, 0.03, False, False)])
+    assert missing._tries[0] == 1
+    place = missing.places[0]
+    feet = [place, *REST[1:]]
+    for depth in (-0.05, 0.0, 0.03):
+        assert stepped(missing, [(0, depth, True, True)], feet=feet)._tries[0] == 1
+    assert stepped(missing, [(0, 0.05, True, True)], feet=feet)._tries[0] == 2
+
+
+def test_the_time_of_a_search_begins_anew_where_a_foot_has_stepped_back():
+    """A ditch ahead of the front left foot only; before it, ground is 15 mm lower than elsewhere."""
+    controller = tarsus.WalkController(tarsus.load_robot("phantomx"))
+    speed, start = 0.5 * controller.top_speed((1, 0, 0)), controller.feet[0, 0]
+
+    def height(x, y):
+        return (-1.0 if x > start + 0.16 else -0.015 if x > start - 0.03 else 0.0) if y > 0.02 else 0.0
+
+    missing, tries = controller._walk.ground.missing, 0
+    for _ in range(700):
+        contacts = [bool(z <= height(x, y) + 3e-4) for x, y, z in controller.feet]
+        readings = tarsus.SensorReadings(contacts=contacts, attitude=(0.0, 0.0), joint_angles=controller.angles)
+        controller.step((speed, 0.0, 0.0), 0.01, readings)
+        tries = max(tries, missing._tries[0])
+    assert tries == 1
+    assert controller.contacts[0]
+    assert missing.refuses
+
+
 @pytest.mark.no_cover
 def test_a_robot_with_short_legs_stops_at_an_edge_and_walks_away_from_it():
     robot = halved(tarsus.load_robot("strider"))

@@ -126,8 +126,9 @@ class FeltGround:
         self.contacts.age = max(valid.contact_age, self._swings.lag - USUAL_LAG)
         self.contacts.estimated = self._loads.estimated
         leaving, rests = timing.due(state, _LEAVING), self._rests and self.support.held
-        # Feet of a robot that is carried find no ground: they wait, and do not search.
-        lands = [on and not self.condition.carried for on in lands]
+        # Feet of a robot that is carried wait, and do not search for ground. Those that step back search anew.
+        moves = self.missing.moving(state.in_heading(state.foot).tolist()) if self.missing.places else ()
+        lands = [on and not (self.condition.carried or leg in moves) for leg, on in enumerate(lands)]
         self.contacts.step(measured, down, dt, count=ticks, lands=lands, leaving=leaving, rests=rests)
         self.condition.step([*map(self.contacts.touches, range(len(down)))], valid.attitude, dt, held=self.support.held)
         self.offsets = self._loads.offsets(valid, angles, state, dt, out=self._given[0])

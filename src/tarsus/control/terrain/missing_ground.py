@@ -14,9 +14,9 @@ from tarsus.control.transition.foothold_transfer import FootholdTransfer
 
 __all__ = ["SLOW", "MissingGround"]
 
-# Depth of a foot without contact above which there is a hole, over the body height; on rough ground it is greater by
-# this factor times the depth that the roughness allows.
-_DEEP, _ROUGHLY_DEEP = 0.75, 1.6
+# Depth of a foot without contact above which there is a hole, over the body height: at first, and where it has stepped
+# back to; on rough ground both are greater by this factor times the depth that the roughness allows.
+_DEEP, _DEEP_AGAIN, _ROUGHLY_DEEP = 0.75, 0.4, 1.6
 # Depths at which the walk begins to slow down, and stands still, besides how much deeper ground may be [m]; least pace
 # while the foot does not go down, at the end of its reach.
 _SLOWS, _STANDS, _SLOWEST = 0.005, 0.02, 0.25
@@ -113,6 +113,10 @@ class MissingGround:
         """Return whether a foot, now at a place in the heading frame, is on its way to another one."""
         return leg in self.places and abs(self.places[leg] - foot) > self._scale * _THERE
 
+    def moving(self, feet: Sequence[complex]) -> list[int]:
+        """Return the legs whose feet, now at places in the heading frame, are on their way to other ones."""
+        return [leg for leg in self.places if self.steps_back(leg, feet[leg])]
+
     def tries(self, leg: int, foot: complex) -> bool:
         """Return whether a foot, now at a place in the heading frame, is on its way past an obstacle."""
         return self.obstacles.tries(leg) and self.steps_back(leg, foot)
@@ -177,7 +181,8 @@ class MissingGround:
             long = not lasts or self._held[leg] > _HELD + _LATER * age
             # A foot that has stepped to another place does not search for long there at the end of its reach.
             hangs = not falls and (depth > deep or not lasts) if leg in self.places else long
-            missing = depth - max(raised, 0.0) > _DEEP * height + _ROUGHLY_DEEP * deeper or hangs
+            deepest = _DEEP_AGAIN if leg in self.places else _DEEP
+            missing = depth - max(raised, 0.0) > deepest * height + _ROUGHLY_DEEP * deeper or hangs
             missing &= abs(leans) < max(self._scale * _LEANS, deeper) or (held and not (lasts or leg in self.places))
             # The robot tips where the other feet do not hold it, or where it has sunk or leans far at the foot.
             unheld = not held and sunk > -self._scale * _LIFTS and depth + max(sunk, 0.0) > deep
@@ -234,6 +239,7 @@ class MissingGround:
         self.places[leg] = complex(footholds.rest[leg]) - back * self._edge.way
         # Ground that is only slightly lower, or rough, may be reached with other footholds.
         reached, shallow = f"no ground within {1e3 * depth:.0f} mm below the other feet", depth < self._scale * _SHALLOW
+        reached += ", as its leg is held up" if self.edge else ""
         self._shallow[leg] = shallow
         self._cause = Cause("the ground is lower than the leg reaches" if shallow else reached, self._names[leg])
         self._again += _AGAIN if sure and not shallow else 0
