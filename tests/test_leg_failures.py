@@ -137,8 +137,13 @@ def test_no_servo_that_works_is_called_failed_on_rough_ground_where_torques_are_
 
 
 def test_a_femur_that_is_held_up_is_taken_for_one_that_the_ground_stalls_where_no_contact_is_measured():
-    stalled = ticks_until_failed(0.4, lambda _: [True] * 6)
+    stalled = ticks_until_failed(-0.4, lambda _: [True] * 6)
     assert stalled == ticks_until_failed(0.4, lambda _: None) == ticks_until_failed(0.4, lambda _: [None] * 6) > 100
+
+
+def test_a_femur_that_bears_load_on_a_foot_that_touches_has_not_failed():
+    assert ticks_until_failed(0.5, lambda _: [True] * 6) == 600
+    assert ticks_until_failed(0.7, lambda _: [True] * 6) < 200
 
 
 @pytest.mark.parametrize("joint", [0, 2])

@@ -216,7 +216,9 @@ def _of_femur(
         Whether the femur is higher than commanded; whether the foot touches the ground, None where that is unknown.
     """
     if touches or not up:
-        return dt * (_STALLED if touches else 1.0) * _over(error, _ERROR, most=_MOST_WEIGHT), (0.0, angle)
+        # A femur above its command whose foot touches bears load: the ground stalls it, unless it gives way far.
+        share = _STALLED * (not up or error > _GIVES_WAY) if touches else 1.0
+        return dt * share * _over(error, _ERROR, most=_MOST_WEIGHT), (0.0, angle)
     counted, lowest = raised or (0.0, angle - error)
     gives_way, known = error > _GIVES_WAY and angle - lowest > _PUSHED, touches is not None
     counts = dt * _over(error, _ERROR, most=_MOST_GIVING_WAY if gives_way and known else _MOST_WEIGHT)
