@@ -5,7 +5,6 @@ import functools
 import numpy as np
 
 from gait_robots import preset
-from tarsus.control.incremental import complete
 from tarsus.control.workspace.cycle_time import cycle_timing
 from tarsus.control.workspace.foot_workspace import foot_workspace
 from tarsus.control.workspace.stance_limits import velocity_limits
@@ -13,6 +12,7 @@ from tarsus.gait.foot_polygons import NORMALS, polygon_margin
 from tarsus.gait.gait import Gait
 from tarsus.gait.stance.stance_geometry import stance_geometry_of
 from tarsus.gait.walk_setup import WalkSetup
+from tarsus.incremental import complete
 from tarsus.kinematics.pose import Pose
 from tarsus.robot.joint_limits import joint_limits
 

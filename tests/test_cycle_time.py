@@ -7,12 +7,12 @@ import pytest
 
 from gait_robots import PRESETS, preset, ring
 from sample_stances import cycle_timing_of, setup_of, standing, velocity_limits_of
-from tarsus.control.incremental import complete
 from tarsus.control.workspace.cycle_time import _SteadyCycle, cycle_timing
 from tarsus.control.workspace.stance_limits import velocity_limits
 from tarsus.gait.cycle import cycle_feet
 from tarsus.gait.gait import Gait
 from tarsus.gait.stance.velocity_limits import with_stroke_limits
+from tarsus.incremental import complete
 from tarsus.robot.joint_limits import JointLimits, joint_limits
 
 HEADINGS = [(np.cos(a), np.sin(a), 0.0) for a in np.arange(7) * 2 * np.pi / 7 + 0.2]

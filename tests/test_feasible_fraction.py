@@ -5,13 +5,13 @@ import pytest
 
 from gait_robots import PRESETS
 from sample_stances import feet_at, pose_of, posture_of, setup_of
-from tarsus.control.incremental import complete
 from tarsus.control.transition.feasible_fraction import balanced_fraction, first_increment, reachable_fraction
 from tarsus.control.transition.stance_transition import StanceTarget
 from tarsus.control.workspace.foot_workspace import foot_workspace, reach_cause, rest_margin
 from tarsus.gait.foot_polygons import NORMALS
 from tarsus.gait.gait import Gait
 from tarsus.gait.stance.stability import StabilityCheck, support_sets
+from tarsus.incremental import complete
 from tarsus.kinematics.inverse import inverse_kinematics
 from tarsus.kinematics.stability import stability_margin
 

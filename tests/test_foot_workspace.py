@@ -8,10 +8,10 @@ from scipy.spatial import HalfspaceIntersection
 
 from gait_robots import PRESETS, ring
 from sample_stances import POSTURES, feet_at, polygon_radii, polygons, pose_of, setup_of, standing
-from tarsus.control.incremental import complete
 from tarsus.control.workspace.foot_workspace import foot_workspace
 from tarsus.gait.foot_polygons import NORMALS, polygon_ends, polygon_margin
 from tarsus.gait.stance.stance_geometry import joint_margin
+from tarsus.incremental import complete
 from tarsus.kinematics.inverse import inverse_kinematics
 from tarsus.kinematics.leg import forward_kinematics
 

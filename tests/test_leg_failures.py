@@ -15,6 +15,7 @@ from tarsus.control.sensing.servo_monitor import ServoMonitor
 from tarsus.control.states.reduced_walking import ReducedWalking
 from tarsus.errors import InputError
 from tarsus.gait.stance.support_stance import support_stance
+from tarsus.incremental import complete
 from tarsus.kinematics.mass import centre_of_mass, total_mass
 from tarsus.robot.remaining import remaining_robot, turned_robot
 from tarsus.simulation import SimulatedPlant
@@ -315,7 +316,7 @@ def test_without_any_one_leg_a_stance_supports_a_fast_gait(name):
     for lost in range(6):
         rest = remaining_robot(robot, [leg for leg in range(6) if leg != lost])
         gait = tarsus.Gait.named("ripple", legs=5)
-        walk = tarsus.WalkController(turned_robot(rest, support_stance(rest, gait)), gait)
+        walk = tarsus.WalkController(turned_robot(rest, complete(support_stance(rest, gait))), gait)
         assert min(walk.top_speed(way) for way in ((1, 0, 0), (-1, 0, 0), (0, 1, 0))) > 0.2 * whole
         least = np.inf
         for _ in range(round(2 * walk.cycle_time / DT)):
@@ -325,7 +326,7 @@ def test_without_any_one_leg_a_stance_supports_a_fast_gait(name):
 
 
 def test_the_stance_of_a_whole_robot_turns_no_leg_to_its_limit():
-    turned = support_stance(STRIDER, tarsus.Gait.named("tripod"), body_height=0.12, swing_height=0.02)
+    turned = complete(support_stance(STRIDER, tarsus.Gait.named("tripod"), body_height=0.12, swing_height=0.02))
     assert (np.abs(turned) < 0.2).all()
 
 

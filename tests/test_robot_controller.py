@@ -242,9 +242,9 @@ def test_what_a_command_leaves_out_holds_also_through_lying_down():
 def test_a_foot_target_is_put_back_before_the_robot_sits_down_and_does_not_come_again():
     controller = RobotController(STRIDER, Gait.named("wave"))
     point = tuple(controller.output.feet[5] + [0.02, 0.0, 0.04])
-    states_of(controller, Command(foot_targets={5: point}), 6.0)
+    states_of(controller, Command(foot_targets={5: point}), 14.0)
     assert not controller.output.contacts[5]
-    found = states_of(controller, Command(foot_targets={5: None}, state="lying"), 15.0)
+    found = states_of(controller, Command(foot_targets={5: None}, state="lying"), 25.0)
     assert found[-1] is RobotState.LYING
     assert not controller.guard.counts
     states_of(controller, Command(state="standing"), 8.0)
@@ -451,12 +451,12 @@ def test_a_foot_stays_where_velocities_have_moved_it_whatever_was_its_target_bef
             controller.step(command, DT)
         return controller.output.feet[0, 2]
 
-    height(Command(foot_targets={0: (0.25, 0.2, 0.06)}), 4)
+    height(Command(foot_targets={0: (0.25, 0.2, 0.06)}), 14)
     moved = height(Command(foot_velocities={0: (0.0, 0.0, 0.03)}), 2)
     assert moved > 0.1
     assert height(Command(), 3) == pytest.approx(moved, abs=0.015)
-    height(Command(foot_targets={0: None}), 8)
-    moved = height(Command(foot_velocities={0: (0.0, 0.0, 0.03)}), 5)
+    height(Command(foot_targets={0: None}), 16)
+    moved = height(Command(foot_velocities={0: (0.0, 0.0, 0.03)}), 14)
     assert moved > 0.03
     assert height(Command(), 3) > 0.9 * moved
 

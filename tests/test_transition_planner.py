@@ -1,6 +1,5 @@
 """Planning of stance transitions: what of a command is feasible, and which limitations are reported."""
 
-import dataclasses
 import functools
 
 import numpy as np
@@ -11,12 +10,12 @@ from hypothesis import strategies as st
 from gait_robots import HEXAPOD_GAITS, PRESETS, ring
 from sample_stances import feet_at, pose_of, posture_of, setup_of
 from sample_walks import WAVE_OF_FOUR
-from tarsus.control.incremental import complete
 from tarsus.control.limitation import Cause, Limitation, LimitationKind
 from tarsus.control.transition.planner import TIPPING, TransitionPlanner
 from tarsus.control.transition.stance_transition import StanceTarget, StanceTransition, WalkParameters, target_stance
 from tarsus.gait.gait import Gait
 from tarsus.gait.stance.stance_geometry import SWING_HEIGHT, rotation_rows, stance_geometry_of
+from tarsus.incremental import complete
 from tarsus.kinematics.inverse import inverse_kinematics
 from tarsus.kinematics.pose import Pose
 from tarsus.kinematics.stance import default_stance
@@ -168,7 +167,7 @@ def test_legs_that_are_gone_bound_nothing():
     setup, first = setup_of("strider"), start("strider")
     # The body leans already to the side that has three legs left.
     lean = (0.0, -0.06, 0.0, 0.0, 0.0, 0.0)
-    parameters = parameters_of(setup, gait=Gait.named("wave"), excluded=(1,), correction=lean)
+    parameters = parameters_of(setup, gait=Gait.named("wave"), excluded=(1,), body=lean)
     found = planned(setup, parameters, posture_of(setup, lean), first.rest)
     assert isinstance(found, StanceTransition)
     assert np.isinf(found.final_limits.bounds[1]).all()
@@ -227,13 +226,6 @@ def test_a_body_that_sways_has_less_room():
     assert swaying.final_limits.margins.sum() < still.final_limits.margins.sum()
 
 
-def test_a_correction_for_the_ground_is_added_to_the_body():
-    setup = setup_of("strider")
-    parameters = parameters_of(setup, body=(0.01,) * 6, correction=(0.0, 0.01, 0.02, 0.0, 0.1, 0.0))
-    assert parameters.corrected_body == pytest.approx((0.01, 0.02, 0.03, 0.01, 0.11, 0.01))
-    assert dataclasses.replace(parameters, correction=(0.0,) * 6).corrected_body == parameters.body
-
-
 @settings(max_examples=12)
 @given(st.tuples(*[st.floats(-0.1, 0.1)] * 3, *[st.floats(-0.5, 0.5)] * 3), st.floats(0.02, 0.3), st.floats(0, 0.1))
 def test_whatever_is_commanded_the_result_is_reached(body, body_height, swing_height):
@@ -260,7 +252,7 @@ def test_a_step_that_could_not_be_taken_on_the_way_is_refused():
     setup, first = setup_of("strider"), start("strider")
     # Where the body is to go the robot may lift what it has left; where it is now, it would tip over.
     lean = (0.0, -0.06, 0.0, 0.0, 0.0, 0.0)
-    parameters = parameters_of(setup, gait=Gait.named("wave"), excluded=(1,), correction=lean)
+    parameters = parameters_of(setup, gait=Gait.named("wave"), excluded=(1,), body=lean)
     found = planned(setup, parameters, first.posture, first.rest)
     assert found.reason == "the robot would tip over on the way"
 
@@ -294,7 +286,7 @@ def test_where_neither_feet_nor_body_can_go_first_a_shorter_way_is_taken():
     setup, first = setup_of("phantomx"), start("phantomx")
     height, level = setup.body_height, StanceTarget(first.posture, first.rest)
     high = parameters_of(setup, body_height=1.3 * height, body=(0.05, 0.0, 0.0, 0.0, 0.0, 0.0))
-    now = target_stance(setup.robot, high, level)
+    now = target_stance(setup.robot, high, level, np.ones(6, dtype=complex))
     found = planned(setup, parameters_of(setup, body_height=0.5 * height, stance_width=0.02), *now)
     assert not found.complete
     assert 0 < np.abs(found.rest - now.rest).max() < 0.03

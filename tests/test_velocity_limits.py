@@ -12,7 +12,6 @@ from scipy.spatial import ConvexHull
 from gait_robots import HEXAPOD_GAITS, PRESETS, ring
 from sample_stances import POSTURES, feet_at, pose_of, setup_of, standing, velocity_limits_of
 from sample_walks import WAVE_OF_FOUR
-from tarsus.control.incremental import complete
 from tarsus.control.workspace.stance_limits import velocity_limits
 from tarsus.gait.cycle import cycle_feet
 from tarsus.gait.foot_polygons import NORMALS, polygon_ends, polygon_margin
@@ -24,6 +23,7 @@ from tarsus.gait.stance.velocity_limits import (
     with_stroke_limits,
 )
 from tarsus.gait.stroke import max_stroke
+from tarsus.incremental import complete
 from tarsus.kinematics.inverse import inverse_kinematics
 from tarsus.kinematics.stability import stability_margin
 

@@ -108,25 +108,25 @@ def test_a_rejected_sway_is_reported():
 @pytest.mark.parametrize("gait", ["tripod", "ripple"])
 def test_a_foot_target_without_support_is_reported_with_the_margin(gait):
     controller = controller_of(gait)
-    run(controller, Command(foot_targets={0: (0.25, 0.2, 0.08)}), 8)
+    run(controller, Command(foot_targets={0: (0.25, 0.2, 0.08), 1: (0.0, 0.3, 0.08)}), 8)
     (limitation,) = controller.limitations
-    assert (limitation.kind, limitation.leg) == (LimitationKind.FOOT_TARGET, "front left")
+    assert (limitation.kind, limitation.leg) == (LimitationKind.FOOT_TARGET, "front left and middle left")
     assert limitation.margin < limitation.least_margin == 0.01
     side = "outside" if limitation.margin < 0 else "inside"
     assert f"{1000 * abs(limitation.margin):.0f} mm {side} its support polygon" in limitation.text()
-    run(controller, Command(foot_targets={0: None}), 3)
+    run(controller, Command(foot_targets={0: None, 1: None}), 3)
     assert controller.limitations == ()
 
 
 def test_a_body_pose_waits_for_the_legs_out_of_the_gait_and_that_is_reported():
     controller = controller_of("wave")
-    run(controller, Command(foot_targets={0: (0.2, 0.22, 0.1)}), 8)
+    run(controller, Command(foot_targets={0: (0.2, 0.22, 0.1)}), 16)
     assert controller.limitations == ()
     run(controller, Command(body=(0, 0, 0.02, 0, 0, 0)), 2)
     (limitation,) = controller.limitations
     assert limitation.kind is LimitationKind.BODY
     assert limitation.cause == "not while a leg is taken out of the gait"
-    run(controller, Command(foot_targets={0: None}), 14)
+    run(controller, Command(foot_targets={0: None}), 20)
     assert controller.limitations == ()
     assert controller.body.position[2] == pytest.approx(0.13, abs=1e-3)
 

@@ -165,10 +165,10 @@ def test_turns_and_sideways_walks_feel_the_ground_too():
 
 def test_a_leg_that_leaves_the_gait_moves_to_its_target_on_felt_ground():
     controller = WalkController(preset("strider"), Gait.named("wave"))
-    walked(controller, flat, Command(foot_targets={0: (0.25, 0.2, 0.06)}), 6)
+    walked(controller, flat, Command(foot_targets={0: (0.25, 0.2, 0.06)}), 14)
     np.testing.assert_allclose(controller.feet[0], (0.25, 0.2, 0.06), atol=0.01)
     walked(controller, flat, Command(twist=(0.03, 0, 0)), 4)
-    walked(controller, flat, Command(foot_targets={0: None}), 10)
+    walked(controller, flat, Command(foot_targets={0: None}), 16)
     assert controller.contacts.all()
 
 

@@ -11,7 +11,7 @@ import numpy as np
 from tarsus.arrays import require_float
 from tarsus.control.control_output import ControlOutput
 from tarsus.control.readings import RollPitch, SensorReadings
-from tarsus.kinematics.mass import known_weight
+from tarsus.kinematics.mass import centre_of_mass, known_weight
 from tarsus.load.foot_force import balanced_forces
 from tarsus.representation import represented
 from tarsus.robot.robot import Robot, require_leg_number, require_robot
@@ -70,7 +70,7 @@ class Environment:
     """
 
     def __init__(self, robot: Robot) -> None:
-        self._weight = known_weight(robot)
+        self._robot, self._weight = robot, known_weight(robot)
         self._height, self._force = np.zeros(robot.legs), np.zeros(robot.legs)
         self._tilt = 0.0, 0.0
         self._contacts = self._attitude = self._forces = False
@@ -120,7 +120,7 @@ class Environment:
         return {
             "contacts": touching if self._contacts else None,
             "attitude": self._tilted(output) if self._attitude else None,
-            "forces": self._loads(output.feet, output.contacts | touching) if self._forces else None,
+            "forces": self._loads(output, output.contacts | touching) if self._forces else None,
         }
 
     def _tilted(self, output: ControlOutput) -> RollPitch:
@@ -133,11 +133,10 @@ class Environment:
         tilt = complex(-math.atan(slope_y), math.atan(slope_x)) * cmath.exp(-1j * yaw) + complex(*self._tilt)
         return roll + tilt.real, pitch + tilt.imag
 
-    def _loads(self, feet: Float[np.ndarray, "legs 3"], bears: Bool[np.ndarray, "legs"]) -> Float[np.ndarray, "legs"]:
+    def _loads(self, output: ControlOutput, bears: Bool[np.ndarray, "legs"]) -> Float[np.ndarray, "legs"]:
         """Return the vertical forces of the ground on the feet ``(legs,)`` [N]."""
-        # The walk controller assumes the centre of mass over the mean of the feet, so shares are computed with it here.
-        centre = feet[:, :2].mean(axis=0)
-        share = balanced_forces(feet.tolist(), bears.tolist(), centre.tolist(), self._weight)
+        centre = output.body @ np.asarray(centre_of_mass(self._robot, output.angles))
+        share = balanced_forces(output.feet.tolist(), bears.tolist(), centre[:2].tolist(), self._weight)
         return np.where(bears, np.array(share) + self._force, 0.0)
 
 

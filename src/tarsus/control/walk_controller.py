@@ -123,7 +123,7 @@ class WalkController:
         loads = FootLoads(self.robot, admittance)
         self._walk = WalkComponents(planner, stance, body=body, loads=loads)
         self._tick = TickState(self._walk.initial, np.zeros(3))
-        self._intake = CommandIntake(self.robot, self._walk.transitions)
+        self._intake = CommandIntake(self.robot.legs, self._walk.transitions)
         self._twist_limiters = twist_limiters(self._walk)
 
     def step(
@@ -155,7 +155,7 @@ class WalkController:
         command = command if isinstance(command, Command) else Command(twist=command)
         require_number("dt", dt, zero=False)
         dt = min(float(dt), _LONGEST_TICK)
-        self._intake.accept(command, self.angles)
+        self._intake.accept(command)
         tick = estimated(self._walk, self._tick, readings, dt)
         tick = planned(self._walk, tick, command, dt)
         tick = limited(self._walk, tick, command, dt, self._twist_limiters)
@@ -179,7 +179,6 @@ class WalkController:
         slow = rate < SLOW and bool(self._tick.twist.any())
         return (
             *walk.transitions.limitations,
-            *self._intake.limitations,
             *walk.foot_targets.limitations,
             *self._tick.limitations,
             *walk.ground.limitations,

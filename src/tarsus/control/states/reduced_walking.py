@@ -22,6 +22,7 @@ from tarsus.errors import TarsusError
 from tarsus.gait.gait import Gait
 from tarsus.gait.stance.support_stance import support_stance
 from tarsus.gait.swing import horizontal_profile
+from tarsus.incremental import complete
 from tarsus.load.servo_limits import at_supply
 from tarsus.robot.remaining import remaining_robot, turned_robot
 from tarsus.robot.robot import JOINTS, Robot
@@ -176,7 +177,7 @@ def _fastest_walk(robot: Robot, **options: Any) -> WalkController:
     heights = {name: options.get(name) for name in ("body_height", "swing_height")}
 
     def walk(gait: Gait) -> WalkController:
-        turned = turned_robot(robot, support_stance(robot, gait, **heights))
+        turned = turned_robot(robot, complete(support_stance(robot, gait, **heights)))
         return WalkController(turned, gait, **options)
 
     walks, legs = [], robot.legs

@@ -131,7 +131,8 @@ class FeltGround:
         lands = [on and not (self.condition.carried or leg in moves) for leg, on in enumerate(lands)]
         self.contacts.step(measured, down, dt, count=ticks, lands=lands, leaving=leaving, rests=rests)
         self.condition.step([*map(self.contacts.touches, range(len(down)))], valid.attitude, dt, held=self.support.held)
-        self.offsets = self._loads.offsets(valid, angles, state, dt, out=self._given[0])
+        centre = self._middle(state)
+        self.offsets = self._loads.offsets(valid, angles, state, dt, out=self._given[0], centre=centre)
         if self.missing.stranded and all(down):
             state = timing.with_first_lift(state, self.missing.stranded[0])
         pace = self.support.pace
@@ -163,8 +164,8 @@ class FeltGround:
         dt, self._idle = self._idle, 0.0
         steps = [leg not in excluded for leg in range(len(state.foot))]
         down = [on and step for on, step in zip(state.down.tolist(), steps, strict=True)]
-        centre = along_gravity(self._centre, state.moved_posture.tolist(), self.body.tilt or (0.0, 0.0))
-        footing = Footing(state.in_heading(state.foot).tolist(), down, centre, float(state.posture.value[2]))
+        places, centre = state.in_heading(state.foot).tolist(), self._middle(state)
+        footing = Footing(places, down, centre, float(state.posture.value[2]))
         if self.body.looks:
             free = [on and leg not in self.missing.obstacles.stops for leg, on in enumerate(footing.down)]
             self.body.step(tick, footing._replace(down=free), transitions, pace=self.support.pace)
@@ -183,6 +184,10 @@ class FeltGround:
         # Inputs stay while all is as planned; with compliant feet or a walk that slows down, each tick has new ones.
         self._inputs = None if self.offsets is not None or self.support.pace < 1.0 else inputs
         return inputs
+
+    def _middle(self, state: GaitState) -> complex:
+        """Return where the centre of mass is above the feet, along gravity, in the heading frame [m]."""
+        return along_gravity(self._centre, state.moved_posture.tolist(), self.body.tilt or (0.0, 0.0))
 
     def _feet_inputs(
         self, state: GaitState, feet: tuple[list[GroundUnder | None], list[bool], list[bool]], travel: float

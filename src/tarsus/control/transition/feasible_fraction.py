@@ -7,12 +7,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from tarsus.control.incremental import Incremental
 from tarsus.control.limitation import Cause
 from tarsus.control.transition.stance_transition import StanceTarget
 from tarsus.control.workspace.foot_workspace import reach_cause, rest_margin
 from tarsus.gait.stance.stability import StabilityCheck
 from tarsus.gait.stance.stance_geometry import SWING_HEIGHT, StanceGeometry, joint_margin, rotation_rows
+from tarsus.incremental import Incremental
 from tarsus.robot.robot import Robot
 
 if TYPE_CHECKING:

@@ -7,10 +7,10 @@ from dataclasses import replace
 import numpy as np
 
 from tarsus.arrays import require_float
-from tarsus.control.incremental import Incremental, complete
 from tarsus.control.limitation import Cause, Limitation, LimitationKind
 from tarsus.control.transition.feasible_fraction import balanced_fraction, first_increment, reachable_fraction
 from tarsus.control.transition.stance_transition import StanceTarget, StanceTransition, WalkParameters, target_stance
+from tarsus.control.transition.supporting_feet import supporting_turns
 from tarsus.control.workspace.cycle_time import CycleTiming, cycle_timing
 from tarsus.control.workspace.foot_workspace import reach_cause
 from tarsus.control.workspace.stance_limits import shifted_limits, velocity_limits
@@ -19,6 +19,7 @@ from tarsus.gait.stance.stability import StabilityCheck, support_sets
 from tarsus.gait.stance.stance_geometry import sway_extremes
 from tarsus.gait.stance.velocity_limits import VelocityLimits, with_stroke_limits
 from tarsus.gait.walk_setup import WalkSetup, require_number
+from tarsus.incremental import Incremental, complete
 from tarsus.robot.joint_limits import JointLimits
 from tarsus.robot.robot import Robot
 
@@ -49,6 +50,8 @@ class TransitionPlanner:
 
     def __init__(self, robot: Robot, joint_limits: JointLimits, *, foot_distance: float) -> None:
         self.robot, self.joint_limits, self._foot_distance = robot, joint_limits, foot_distance
+        # Legs that bear no load, and by how much the others turn then: the same for all increments of a transition.
+        self._unloaded, self._turns = tuple[int, ...](), np.ones(robot.legs, dtype=complex)
 
     def initial_stance(self, setup: WalkSetup, *, stance_width: float, cycle_time: float | None) -> StanceTransition:
         """Return the stance that the setup of a walk asks for.
@@ -101,7 +104,10 @@ class TransitionPlanner:
             The transition; or why nothing of it is feasible.
         """
         robot = self.robot
-        end = present if stay else target_stance(robot, parameters, present)
+        if not stay and parameters.unloaded != self._unloaded:
+            turns = yield from supporting_turns(robot, parameters.unloaded)
+            self._unloaded, self._turns = parameters.unloaded, turns
+        end = present if stay else target_stance(robot, parameters, present, self._turns)
         if end is None:
             return _UNREACHABLE
         yield

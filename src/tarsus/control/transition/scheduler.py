@@ -8,10 +8,10 @@ from itertools import chain
 from typing import TypeAlias
 
 from tarsus.control.command import Command
-from tarsus.control.incremental import Incremental
 from tarsus.control.limitation import Cause, Limitation, LimitationKind
 from tarsus.control.transition.stance_transition import StanceTransition, WalkParameters
 from tarsus.gait.gait import Gait
+from tarsus.incremental import Incremental
 
 __all__ = ["PlanTransition", "TransitionScheduler"]
 
@@ -64,15 +64,15 @@ class TransitionScheduler:
         valid = (each for each in self.current.limitations if getattr(now, each.kind) == getattr(then, each.kind))
         return (*(found for found in valid if found.kind not in newer), *self._shortfalls)
 
-    def request(self, command: Command, excluded: tuple[int, ...], correction: tuple[float, ...]) -> None:
+    def request(self, command: Command, excluded: tuple[int, ...]) -> None:
         """Take note of a command.
 
         Parameters
         ----------
         command : Command
             The command; what is None in it stays as it is.
-        excluded, correction : tuple of int, tuple of float
-            Legs to take out of the gait; shift of the body over the feet that bear load.
+        excluded : tuple of int
+            Legs to take out of the gait.
 
         Raises
         ------
@@ -89,7 +89,7 @@ class TransitionScheduler:
         changes["gait"] = gait
         if changes.get("cycle_time") == "auto":
             changes["cycle_time"] = None
-        asked = dataclasses.replace(before, correction=correction, excluded=excluded, **changes)
+        asked = dataclasses.replace(before, unloaded=excluded, excluded=excluded, **changes)
         if asked != before:
             self.requested, self._rejections = asked, {}
             self._shortfalls = ()
@@ -146,7 +146,7 @@ class TransitionScheduler:
         self._done, current = self.requested, self.current.parameters
         self._shortfalls = tuple(chain.from_iterable(self._rejections.values()))
         # Any change of how the robot stands has to wait until all legs are back in the gait.
-        deferred = dataclasses.replace(self.requested.stepping_like(current), correction=current.correction)
+        deferred = dataclasses.replace(self.requested.stepping_like(current), unloaded=current.unloaded)
         if current.excluded and self._is_open(deferred, False):
             self._shortfalls += tuple(deferred.rejected(current, self.current.posture, _DEFERRED))
 
@@ -162,7 +162,7 @@ class TransitionScheduler:
             # In another posture, the feet of these legs might be out of reach where they are.
             order = order[:1]
         elif requested.excluded:
-            # Before a leg leaves the gait, the body shifts over the feet of the others.
+            # Before a leg leaves the gait, the feet of the others step to where they support the robot.
             order.reverse()
         return next((each for each in order if self._is_open(*each)), (current, True))
 

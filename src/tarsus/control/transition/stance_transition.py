@@ -46,8 +46,8 @@ class WalkParameters:
         Body pose relative to a level body at the body height: x, y, z [m], roll, pitch, yaw [rad].
     sway : tuple of float
         Amplitudes of the body's sway, axes as in `body`.
-    correction : tuple of float
-        Shift over the feet that bear load, added to `body`.
+    unloaded : tuple of int
+        Legs that are to bear no load: the feet of the others stand where they support the robot without these.
     excluded : tuple of int
         Legs that are taken out of the gait.
     """
@@ -59,13 +59,8 @@ class WalkParameters:
     cycle_time: float | None
     body: tuple[float, ...] = (0.0,) * 6
     sway: tuple[float, ...] = (0.0,) * 6
-    correction: tuple[float, ...] = (0.0,) * 6
+    unloaded: tuple[int, ...] = ()
     excluded: tuple[int, ...] = ()
-
-    @property
-    def corrected_body(self) -> tuple[float, ...]:
-        """The body pose with its correction."""
-        return tuple(a + b for a, b in zip(self.body, self.correction, strict=True))
 
     def shortfalls(self, posture: Float[np.ndarray, "7"], cause: Cause, *, stance_width: float) -> list[Limitation]:
         """Return a limitation for each parameter that a posture does not meet.
@@ -73,11 +68,11 @@ class WalkParameters:
         Parameters
         ----------
         posture, cause : array, shape (7,), and Cause
-            The posture that is met, with the correction of the parameters; why these are not met.
+            The posture that is met; why the parameters are not met.
         stance_width : float
             The stance width that is met [m]; it is reported only where everything else is met.
         """
-        gap = np.array([*self.corrected_body, self.swing_height]) - posture
+        gap = np.array([*self.body, self.swing_height]) - posture
         gap[2] += self.body_height
         found = []
         # Body height and body pose both command the height of the body's origin: a gap greater than the pose's part
@@ -96,16 +91,12 @@ class WalkParameters:
         return found
 
     def _body_shortfalls(self, gap: Float[np.ndarray, "6"], cause: Cause) -> list[Limitation]:
-        """Return what is missing of the body pose, or of its correction where only that is missing."""
+        """Return what is missing of the body pose."""
         missing = [axis for axis in range(SWING_HEIGHT) if abs(gap[axis]) > _TOLERANCE]
-        commanded = [axis for axis in missing if self.body[axis]]
-        if commanded:
-            fraction = min(1 - abs(float(gap[axis]) / self.body[axis]) for axis in commanded)
-            return [cause.limitation(LimitationKind.BODY, asked=1.0, granted=max(fraction, 0.0))]
-        if missing:
-            reason = f"the shift over the feet that bear load is not met: {cause.reason}"
-            return [cause._replace(reason=reason).limitation(LimitationKind.BODY)]
-        return []
+        if not missing:
+            return []
+        met = [1 - abs(float(gap[axis]) / self.body[axis]) if self.body[axis] else 0.0 for axis in missing]
+        return [cause.limitation(LimitationKind.BODY, asked=1.0, granted=max(min(met), 0.0))]
 
     def rejected(self, now: WalkParameters, posture: Float[np.ndarray, "7"] | None, cause: Cause) -> list[Limitation]:
         """Return the limitations of parameters that are rejected as a whole.
@@ -130,9 +121,7 @@ class WalkParameters:
             return found
         if self.sway != now.sway:
             found.append(cause.limitation(LimitationKind.SWAY, asked=1.0, granted=0.0))
-        corrected = posture.copy()
-        corrected[:SWING_HEIGHT] += np.subtract(self.correction, now.correction)
-        return found + self.shortfalls(corrected, cause, stance_width=now.stance_width)
+        return found + self.shortfalls(posture, cause, stance_width=now.stance_width)
 
     def stepping_like(self, others: WalkParameters) -> WalkParameters:
         """Return these parameters with the steps of others: their gait, cycle time, and legs out of the gait."""
@@ -154,7 +143,13 @@ class StanceTarget(NamedTuple):
     rest: Complex[np.ndarray, "legs"]
 
     @classmethod
-    def of(cls, robot: Robot, parameters: WalkParameters, feet: Float[np.ndarray, "legs 3"]) -> StanceTarget:
+    def of(
+        cls,
+        robot: Robot,
+        parameters: WalkParameters,
+        feet: Float[np.ndarray, "legs 3"],
+        turns: Complex[np.ndarray, "legs"] | complex = 1.0,
+    ) -> StanceTarget:
         """Return the posture and the rest footholds that parameters ask for.
 
         Parameters
@@ -163,12 +158,14 @@ class StanceTarget(NamedTuple):
             A single robot; what is commanded.
         feet : array, shape (legs, 3)
             The default footholds at these heights, in B [m].
+        turns : complex array, shape (legs,), or complex
+            Factors of the ways from coxa axes to footholds, by which these turn about the axes.
         """
-        posture = np.array([*parameters.corrected_body, parameters.swing_height])
+        posture = np.array([*parameters.body, parameters.swing_height])
         posture[2] += parameters.body_height
         mount, rest = robot.geometry.mount_x + 1j * robot.geometry.mount_y, feet[:, 0] + 1j * feet[:, 1]
         outward = (rest - mount) / np.maximum(np.abs(rest - mount), 1e-9)
-        return cls(posture, rest + parameters.stance_width * outward)
+        return cls(posture, mount + (rest + parameters.stance_width * outward - mount) * turns)
 
     def towards(self, other: StanceTarget, fraction: float) -> StanceTarget:
         """Return the stance at a fraction of the straight path to another: 0 for this one, 1 for the other."""
@@ -180,7 +177,9 @@ class StanceTarget(NamedTuple):
         return stance_geometry_of(self.posture, self.rest)
 
 
-def target_stance(robot: Robot, parameters: WalkParameters, present: StanceTarget) -> StanceTarget | None:
+def target_stance(
+    robot: Robot, parameters: WalkParameters, present: StanceTarget, turns: Complex[np.ndarray, "legs"]
+) -> StanceTarget | None:
     """Return the posture and rest footholds asked for, or those at the nearest height that has footholds.
 
     None where no height between the present and the commanded one has footholds.
@@ -189,8 +188,10 @@ def target_stance(robot: Robot, parameters: WalkParameters, present: StanceTarge
     ----------
     robot, parameters, present : Robot, WalkParameters, StanceTarget
         A single robot; what is commanded; the present stance.
+    turns : complex array, shape (legs,)
+        Factors of the ways from coxa axes to rest footholds, by which these turn about the axes.
     """
-    body_height = float(present.posture[2]) - parameters.corrected_body[2]
+    body_height = float(present.posture[2]) - parameters.body[2]
     swing_height = float(present.posture[SWING_HEIGHT])
     for fractions in (np.ones(1), _FRACTIONS):
         body_heights = body_height + fractions * (parameters.body_height - body_height)
@@ -201,7 +202,7 @@ def target_stance(robot: Robot, parameters: WalkParameters, present: StanceTarge
             first = int(works.argmax())
             body_height, swing_height = float(body_heights[first]), float(swing_heights[first])
             nearest = replace(parameters, body_height=body_height, swing_height=swing_height)
-            return StanceTarget.of(robot, nearest, feet[first])
+            return StanceTarget.of(robot, nearest, feet[first], turns)
     return None
 
 

@@ -7,11 +7,11 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from tarsus.control.incremental import Incremental
 from tarsus.gait.cycle import cycle_feet
 from tarsus.gait.gait import Gait
 from tarsus.gait.stance.stance_geometry import StanceGeometry
 from tarsus.gait.stance.velocity_limits import VelocityLimits
+from tarsus.incremental import Incremental
 from tarsus.robot.joint_limits import JointLimits
 from tarsus.robot.robot import Robot
 

@@ -15,11 +15,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from tarsus.control.incremental import Incremental
 from tarsus.control.limitation import Cause
 from tarsus.gait.foot_polygons import NORMALS, NORMALS_CONJUGATE, polygon_ends
 from tarsus.gait.stance.leg_margin import RESERVED_MARGIN, LegMargin
 from tarsus.gait.stance.stance_geometry import StanceGeometry
+from tarsus.incremental import Incremental
 from tarsus.robot.robot import Robot
 
 if TYPE_CHECKING:

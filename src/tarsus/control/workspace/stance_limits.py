@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from tarsus.control.incremental import Incremental
 from tarsus.control.workspace.foot_workspace import foot_workspace
 from tarsus.gait.body_shift import shift_at
 from tarsus.gait.foot_polygons import NORMALS_CONJUGATE
@@ -18,6 +17,7 @@ from tarsus.gait.stance.stability import StabilityCheck, safe_fraction, support_
 from tarsus.gait.stance.stance_geometry import StanceGeometry
 from tarsus.gait.stance.stance_shift import stance_shift, support_phases
 from tarsus.gait.stance.velocity_limits import VelocityLimits
+from tarsus.incremental import Incremental
 from tarsus.robot.robot import Robot
 
 if TYPE_CHECKING:

@@ -8,6 +8,7 @@ import numpy as np
 
 from tarsus.gait.gait import Gait
 from tarsus.gait.spacing import default_foot_distance
+from tarsus.incremental import Incremental
 from tarsus.kinematics.inverse import inverse_kinematics
 from tarsus.kinematics.mass import centre_of_mass
 from tarsus.kinematics.polygon import hull_margin
@@ -21,14 +22,16 @@ __all__ = ["support_stance"]
 
 # Step sizes of the search: the first, and the one at which it ends [rad].
 _FIRST_STEP, _LAST_STEP = 0.2, 0.02
+# Trials in a stage of the search.
+_IN_STAGE = 4
 # Width of the smooth minimum, over the mean length of the legs: the search would get stuck at kinks of a true minimum.
 _SMOOTH = 0.05
 
 
 def support_stance(
     robot: Robot, gait: Gait, *, body_height: float | None = None, swing_height: float | None = None
-) -> Float[np.ndarray, "legs"]:
-    """Return the coxa angles of a stance in which the feet that a gait leaves on the ground support the robot.
+) -> Incremental[Float[np.ndarray, "legs"]]:
+    """Find the coxa angles of a stance in which the feet that a gait leaves on the ground support the robot.
 
     Where a robot lacks a leg, the others move towards its place. A pattern search maximises the smooth minimum of
     three kinds of length: the distance of the centre of mass from the edges of the support polygons, half the excess
@@ -78,9 +81,11 @@ def support_stance(
     found, step = quality(best), _FIRST_STEP
     while step > _LAST_STEP:
         before = found
-        for trial in np.concatenate([np.eye(robot.legs), -np.eye(robot.legs)]):
+        for index, trial in enumerate(np.concatenate([np.eye(robot.legs), -np.eye(robot.legs)])):
             turned = np.clip(best + step * trial, lower, upper)
             if (value := quality(turned)) > found:
                 best, found = turned, value
+            if index % _IN_STAGE == 0:
+                yield
         step = step if found > before else step / 2
     return np.asarray(angles[:, 0] + best)
