@@ -292,6 +292,17 @@ def test_a_servo_moves_a_little_wherever_it_is_and_whatever_limits_another_has(s
     assert step < 30
 
 
+def test_servos_that_are_held_when_it_ends_get_their_full_torque_back():
+    calibration = new_calibration(tarsus.load_robot("strider"), "strider", kind="feetech-sts", port="emulated")
+    bus, line = emulated_bus("feetech-sts", range(1, 19), clock=ManualClock())
+    bench = Bench(bus, calibration, ManualClock(), blank=calibration)
+    for number in (3, 7):
+        bench.hold(number)
+        assert line.servos[number].torque_limit == pytest.approx(0.35)
+    bench.close()
+    assert {(servo.torque, servo.torque_limit) for servo in line.servos.values()} == {(False, 1.0)}
+
+
 def test_the_port_is_found_and_missing_servos_are_named(tmp_path):
     machine = Machine("feetech-sts")
     machine.line.faults.missing |= {4, 5}

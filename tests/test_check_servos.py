@@ -1,6 +1,7 @@
 """Nothing moves, why? Each cause is put into emulated servos, and must be found."""
 
 import dataclasses
+import math
 
 import pytest
 
@@ -146,8 +147,9 @@ def test_a_port_error_is_no_traceback():
     assert (finding.ok, finding.measured, finding.remedy) == (False, "Access is denied", "Ask.")
 
 
-def test_an_interrupt_releases_the_joint_that_is_moved():
-    bench = Bench()
+def test_an_interrupt_releases_the_joint_that_is_moved_and_ends_its_limits():
+    # Feetech servos get their speed with the next goal.
+    bench = Bench("dynamixel-mx")
     sleep = bench.clock.sleep
 
     def interrupted(seconds):
@@ -160,7 +162,8 @@ def test_an_interrupt_releases_the_joint_that_is_moved():
     bench.clock.sleep = interrupted
     with pytest.raises(KeyboardInterrupt):
         bench.findings(move=True)
-    assert not any(servo.torque for servo in bench.line.servos.values())
+    for servo in bench.line.servos.values():
+        assert (servo.torque, servo.torque_limit, servo.speed_limit) == (False, 1.0, math.inf)
 
 
 def test_a_board_of_foot_switches_alone_tells_their_levels(tmp_path):

@@ -454,6 +454,32 @@ def test_two_boards_and_a_rig_that_can_t_sit_down():
     assert not any(servo.torque for servo in rigs["main"][1].servos.values())
 
 
+@pytest.mark.parametrize("kind", ["feetech-sts", "dynamixel-x", "dynamixel-mx", "dynamixel-ax"])
+def test_servos_have_their_full_torque_again_after_letting_down_and_in_every_run(kind):
+    rig = Rig(kind)
+    servos, angles = rig.line.servos.values(), rig.controller.output.angles
+    # As a program leaves them that is killed while it lets down.
+    for number, servo in rig.line.servos.items():
+        servo.torque, servo.torque_limit = True, 0.08
+        if kind == "dynamixel-x":
+            rig.line.memory[number].set("watchdog", -1)
+    write = rig.bus.write_goals
+
+    def written(goals):
+        # Full torque before the goals would let them jump to the old ones.
+        assert {servo.torque_limit for servo in servos} == {0.08}
+        write(goals)
+        assert {number: rig.line.memory[number].get("goal") for number in goals} == goals
+
+    rig.bus.write_goals = written
+    rig.plant._servos.switch_on(angles, measured=True)
+    assert {servo.torque_limit for servo in servos} == {1.0}
+    rig.plant._servos.let_down()
+    assert max(servo.torque_limit for servo in servos) < 0.1
+    rig.plant.release()
+    assert {(servo.torque, servo.torque_limit) for servo in servos} == {(False, 1.0)}
+
+
 def test_readings_have_what_every_servo_told():
     rig = Rig()
     rig.plant.start(rig.controller.output)

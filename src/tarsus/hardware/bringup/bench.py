@@ -39,7 +39,8 @@ class Bench:
                 bus.name, bus.port, expected="scale and limits of the servos", received="none", remedy="Add them."
             )
         self._scale, self._limits = joint.scale, limits
-        # Last command and range of each servo: the range includes its start, so that it never jumps to the limits.
+        # Last command of each servo, and range of each that was held: it includes its start, so that it never jumps to
+        # the limits.
         self._goals: dict[int, float] = {}
         self._ranges: dict[int, tuple[float, float]] = {}
 
@@ -146,7 +147,7 @@ class Bench:
         return sign
 
     def release(self, numbers: Sequence[int] | None) -> None:
-        """Release servos, as far as the bus can.
+        """Release servos, as far as the bus can, and give them back their full torque.
 
         Parameters
         ----------
@@ -154,8 +155,7 @@ class Bench:
             Ids or channels; None for all.
         """
         self.bus.set_torque(numbers, False)
-        if numbers:
-            self.bus.set_torque_limit(numbers, 1.0)
+        self.bus.set_torque_limit(tuple(self._ranges) if numbers is None else numbers, 1.0)
 
     def close(self) -> None:
         """Release all, and close the port; never raises a bus's error."""

@@ -58,9 +58,9 @@ def _moved(subject: Subject, bus: Bus, number: int) -> float | None:
         return None
     step = _STEP * abs(slope)
     goal = start + step if start + step <= high else start - step
-    bus.set_torque_limit((number,), _TORQUE)
-    bus.write_goals({number: round(min(max(start, low), high))})
     try:
+        bus.set_torque_limit((number,), _TORQUE)
+        bus.write_goals({number: round(min(max(start, low), high))})
         bus.set_torque((number,), True)
         bus.set_speed_limit((number,), step / _LASTS * 2)
         bus.write_goals({number: round(min(max(goal, low), high))})
@@ -70,8 +70,8 @@ def _moved(subject: Subject, bus: Bus, number: int) -> float | None:
         subject.clock.sleep(_LASTS)
     finally:
         bus.set_torque((number,), False)
-    bus.set_torque_limit((number,), 1.0)
-    bus.set_speed_limit((number,), None)
+        bus.set_torque_limit((number,), 1.0)
+        bus.set_speed_limit((number,), None)
     return None if end is None else abs(end - start) / abs(slope)
 
 

@@ -32,6 +32,8 @@ _INSTRUCTIONS = {
 # Overheating bit, in an answer's error byte or the register for hardware errors; error of a write that is refused.
 _OVERHEATED = 1 << 2
 _NOT_WRITABLE = 7
+# What X servos refuse after their watchdog has stopped them.
+_GOALS = ("goal", "torque_limit")
 
 
 class EmulatedRegisters(EmulatedLine):
@@ -189,9 +191,9 @@ class EmulatedRegisters(EmulatedLine):
         word, memory = 2 if self._two else 1, self.memory[id]
         address = self._number(data, 0, word)
         stopped = memory.has("watchdog") and memory.get("watchdog") == -1
-        # X servos refuse goals after their watchdog has stopped them, and writes to EEPROM while their torque is on.
+        # X servos refuse writes to EEPROM while their torque is on.
         locked = self._two and self.servos[id].torque and address < memory.address("torque")
-        if locked or (stopped and memory.touches("goal", address, len(data) - word)):
+        if locked or (stopped and any(memory.touches(goal, address, len(data) - word) for goal in _GOALS)):
             return _NOT_WRITABLE
         memory.write(address, data[word:])
         return 0

@@ -105,7 +105,7 @@ class ServoOutput:
                 )
 
     def switch_on(self, angles: Float[np.ndarray, "legs 3"], *, measured: bool) -> None:
-        """Switch on the servos one leg after the other, each with its present position as its command.
+        """Switch on the servos one leg after the other, each with its present position as its command, at full torque.
 
         Parameters
         ----------
@@ -117,6 +117,9 @@ class ServoOutput:
         goals = self._joints.goals(self._limiter.begin(angles))
         self.powered = True
         self._last = self._clock.now()
+        for name, bus in self._buses.items():
+            # Servos that the watchdog of an earlier run has stopped refuse goals.
+            bus.set_watchdog(self._joints.numbers(name), None)
         for leg in release_order(self._calibration.robot.legs):
             for name, bus in self._buses.items():
                 numbers = self._joints.numbers(name, (leg,))
@@ -129,9 +132,11 @@ class ServoOutput:
                     bus.write_goals({number: goals[name][number]})
                     self._clock.sleep(self._settings.start_interval)
         for name, bus in self._buses.items():
-            span = bus.capabilities.watchdog
+            numbers, span = self._joints.numbers(name), bus.capabilities.watchdog
             if span is not None:
-                bus.set_watchdog(self._joints.numbers(name), min(max(self._settings.watchdog, span[0]), span[1]))
+                bus.set_watchdog(numbers, min(max(self._settings.watchdog, span[0]), span[1]))
+            # A program that was ended may have left them with less. Not before the goals, as they may hold already.
+            bus.set_torque_limit(numbers, 1.0)
 
     def send(self, angles: Float[np.ndarray, "legs 3"], dt: float, now: float) -> None:
         """Send joint angles, as far as limits and speeds allow, and wait until they have been transmitted.
@@ -178,7 +183,7 @@ class ServoOutput:
         self._joints = self._joints.without(joint.bus, joint.number)
 
     def let_down(self) -> None:
-        """Reduce the torque in steps, on all buses that can limit it."""
+        """Reduce the torque in steps, on all buses that can limit it, until `release` restores it."""
         for share in _FADING:
             able = [(name, bus) for name, bus in self._buses.items() if bus.capabilities.torque_limit]
             for name, bus in able:
@@ -197,6 +202,7 @@ class ServoOutput:
                 if not all(released):
                     notes.append(f"{bus.name} on {bus.port} can't release servos: switch their supply off")
                 bus.set_watchdog(self._joints.numbers(name), None)
+                bus.set_torque_limit(self._joints.numbers(name), 1.0)
             except Exception as error:
                 notes.append(f"the servos on {name} may still hold: {error}")
         return notes
