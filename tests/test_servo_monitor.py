@@ -109,6 +109,18 @@ def test_the_voltage_of_the_supply(volts, seconds, kind):
     assert watch.lowest_voltage == volts
 
 
+def test_a_servo_at_the_end_of_a_cable_has_a_low_voltage_whatever_the_others_have():
+    watch = monitor()
+    enough, low = Telemetry(voltage=6.0), Telemetry(voltage=5.7)
+    for time in (0.0, 0.1, 0.2, 0.3, 0.4):
+        # The third has enough at first.
+        assert watch.measured("main", {1: enough, 2: low, 3: low if time > 0.2 else enough}, now=time) is None
+    assert watch.measured("main", {3: low}, now=0.6) is None
+    fault = watch.measured("main", {2: low}, now=0.6)
+    assert fault.kind is FaultKind.LOW_VOLTAGE
+    assert fault.text == "the supply has 5.7 V at the front left femur, less than 6.0 V for 0.6 s"
+
+
 def test_without_a_supply_the_servos_own_least_voltage_counts():
     assert least_voltage(calibration(None)) == 4.8
     assert least_voltage(calibration(None, STRIDER.replace(servos=()))) is None

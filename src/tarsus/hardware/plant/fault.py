@@ -48,7 +48,10 @@ REACTIONS: Mapping[FaultKind, tuple[Reaction, str]] = MappingProxyType(
             Reaction.LIMP,
             "Use a battery and cables that carry the peak current, which tarsus loads gives.",
         ),
-        FaultKind.LOW_VOLTAGE: (Reaction.SIT, "Charge the battery."),
+        FaultKind.LOW_VOLTAGE: (
+            Reaction.SIT,
+            "Charge the battery; check its cable, and those from servo to servo, for the current (tarsus loads).",
+        ),
         FaultKind.STUCK: (
             Reaction.SIT,
             "Free the joint, and check its gears, its limits in the calibration and that no cable blocks it.",

@@ -55,7 +55,8 @@ class TelemetryMonitor:
         self._calibration, self._joints, self._settings = calibration, joints, settings
         shape = (calibration.robot.legs, 3)
         self._heavy_since = np.full(shape, np.nan)
-        self._low_since: float | None = None
+        # Since when each servo, and each one that tells a voltage, has had too low a one.
+        self._low_since, self._all_low_since = np.full(shape, np.inf), math.inf
         self.temperatures = np.full(shape, np.nan)
         self.voltages = np.full(shape, np.nan)
         self.currents = np.full(shape, np.nan)
@@ -98,12 +99,12 @@ class TelemetryMonitor:
             ):
                 if value is not None:
                     array[place] = value
-            fault = self._of_voltage(telemetry.voltage, now) or self._of_servo(place, telemetry, now)
+            fault = self._of_voltage(place, telemetry.voltage, now) or self._of_servo(place, telemetry, now)
             if fault is not None:
                 return fault
         return None
 
-    def _of_voltage(self, voltage: float | None, now: float) -> ServoFault | None:
+    def _of_voltage(self, place: Joint, voltage: float | None, now: float) -> ServoFault | None:
         least, settings = least_voltage(self._calibration), self._settings
         if voltage is None or least is None:
             return None
@@ -111,12 +112,16 @@ class TelemetryMonitor:
             text = f"the supply has {voltage:.1f} V, below {least * settings.brown_out:.1f} V"
             return ServoFault(kind=FaultKind.BROWN_OUT, text=f"{text}: a brown-out is suspected", time=now)
         if voltage >= least:
-            self._low_since = None
+            self._low_since[place] = self._all_low_since = math.inf
             return None
-        self._low_since = now if self._low_since is None else self._low_since
-        if now - self._low_since < settings.low_time:
+        since = self._low_since[place] = min(float(self._low_since[place]), now)
+        # Where voltages are read seldom, each time from another servo, it takes long until one is asked again.
+        self._all_low_since = min(self._all_low_since, now)
+        where = f" at the {self._calibration.joint_name(*place)}" if since < self._all_low_since else ""
+        lasted = now - min(since, self._all_low_since)
+        if lasted < settings.low_time:
             return None
-        text = f"the supply has {voltage:.1f} V, less than {least:.1f} V for {now - self._low_since:.1f} s"
+        text = f"the supply has {voltage:.1f} V{where}, less than {least:.1f} V for {lasted:.1f} s"
         return ServoFault(kind=FaultKind.LOW_VOLTAGE, text=text, time=now)
 
     def _of_servo(self, place: Joint, telemetry: Telemetry, now: float) -> ServoFault | None:
