@@ -82,17 +82,20 @@ class Rig:
             self.plant.step(self.controller.output, 0.01)
 
     def check_sent(self):
-        """Every command within the limits, and no faster than the joints."""
+        """Every command within the limits, and no way faster than the joints, but for less than one command."""
         limits = self.calibration.command_limits.reshape(-1, 2)
         speed = (tarsus.robot.joint_limits.joint_limits(STRIDER).speed * np.abs(self.calibration.slopes)).ravel()
-        last = {}
+        last, beyond = {}, dict.fromkeys(self.ids, 0.0)
         for time, goals in self.bus.sent:
             for number, goal in goals.items():
                 i = self.ids.index(number)
                 assert limits[i, 0] <= goal <= limits[i, 1]
                 assert goal == round(goal)
                 if number in last:
-                    assert abs(goal - last[number][1]) <= speed[i] * (time - last[number][0]) + 1e-6
+                    way = abs(goal - last[number][1]) - speed[i] * (time - last[number][0])
+                    # The greatest sum up to here, from any command before.
+                    beyond[number] = max(beyond[number], 0.0) + way
+                    assert beyond[number] < 1 + 1e-6
                 last[number] = time, goal
 
     @property
@@ -286,6 +289,31 @@ def test_the_limiter_moves_nothing_without_a_time():
     narrow = nominal_calibration(STRIDER, "strider", kind="feetech-sts").with_joint(0, 0, limits=(2000.2, 2000.8))
     with pytest.raises(InputError, match="front left coxa contain no whole command"):
         CommandLimiter(narrow)
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_joints_of_any_speed_reach_it_and_never_exceed_it(seed):
+    random = np.random.default_rng(seed)
+    servo = tarsus.Servo(name="s", stall_torque=2.0, no_load_speed=10.0 ** random.uniform(-2, 1))
+    kind = str(random.choice(["dynamixel-ax", "feetech-sts", "lx16a"]))
+    made = nominal_calibration(STRIDER.replace(servos=((servo,) * 3,) * 6), "strider", kind=kind)
+    limiter, speed = CommandLimiter(made), servo.no_load_speed * np.abs(made.slopes)
+    low, high = made.limits[..., 0], made.limits[..., 1]
+    first = limiter.begin(low)
+    distance = np.abs(CommandLimiter(made).begin(high) - first)
+    for tick in range(1, 200):
+        moved = np.abs(limiter.limited(high, 0.005) - first)
+        assert np.abs(moved - np.minimum(distance, speed * 0.005 * tick)).max() < 1 + 1e-6
+    # Whatever is asked: the way in any span of time, and that since the beginning, which is not greater by any part.
+    sent, most, whole, goal = limiter.begin(low), np.zeros((6, 3)), np.zeros((6, 3)), low
+    for _ in range(1000):
+        dt = float(random.choice([0.0, 0.003, 0.01]))
+        goal = np.where(random.random((6, 3)) < 0.05, random.uniform(low, high), goal)
+        before, sent = sent, limiter.limited(goal, dt)
+        way = np.abs(sent - before) - speed * dt
+        most, whole = np.maximum(most, 0.0) + way, whole + way
+        assert most.max() < 1 + 1e-6
+        assert whole.max() < 1e-6
 
 
 def test_a_soft_start_moves_slowly_from_where_the_servos_are():

@@ -19,8 +19,8 @@ __all__ = ["CommandLimiter"]
 class CommandLimiter:
     """Turns joint angles into whole commands, never beyond a limit and never faster than the joint moves.
 
-    Whatever angles it is given, each command is within `Calibration.command_limits`, and differs from the one before
-    by no more than the joint's greatest speed times the time between them.
+    Whatever angles it is given, each command is within `Calibration.command_limits`, and the way of a joint since any
+    command before is less than one command more than its greatest speed times the time between them.
 
     Parameters
     ----------
@@ -41,6 +41,7 @@ class CommandLimiter:
             leg, joint = np.argwhere(self._low > self._high)[0].tolist()
             raise InputError(f"the limits of the {calibration.joint_name(leg, joint)} contain no whole command")
         self._speed = joint_limits(calibration.robot).speed * np.abs(calibration.slopes)
+        self._unused = np.zeros_like(self._speed)
         self.sent: Int[np.ndarray, "legs 3"] | None = None
 
     def begin(self, angles: Float[np.ndarray, "legs 3"]) -> Int[np.ndarray, "legs 3"]:
@@ -57,6 +58,7 @@ class CommandLimiter:
             If they are not finite.
         """
         self.sent = self._whole(self._finite(angles))
+        self._unused = np.zeros_like(self._speed)
         return self.sent
 
     def limited(self, angles: Float[np.ndarray, "legs 3"], elapsed: float) -> Int[np.ndarray, "legs 3"]:
@@ -76,9 +78,12 @@ class CommandLimiter:
         """
         if self.sent is None:
             raise InputError("where the joints are is not known yet; call begin(angles) first")
-        wanted = self._whole(self._finite(angles))
-        most = np.floor(self._speed * elapsed) if 0 < elapsed < np.inf else np.zeros_like(self._speed)
-        self.sent = self.sent + np.clip(wanted - self.sent, -most, most).astype(int)
+        way = self._whole(self._finite(angles)) - self.sent
+        possible = self._unused + self._speed * (elapsed if 0 < elapsed < np.inf else 0.0)
+        most = np.floor(possible)
+        # Slow joints move by less than a command in a tick: what is left counts for the next, unless they have arrived.
+        self._unused = np.where(np.abs(way) > most, possible - most, 0.0)
+        self.sent = self.sent + np.clip(way, -most, most).astype(int)
         return self.sent
 
     def _whole(self, angles: Float[np.ndarray, "legs 3"]) -> Int[np.ndarray, "legs 3"]:
