@@ -25,6 +25,7 @@ from tarsus.hardware.live.gamepad import Gamepad
 from tarsus.hardware.live.keyboard import KEYS, Keyboard
 from tarsus.hardware.live.live_commands import Input, LiveCommands
 from tarsus.hardware.live.supervision import Rising, Supervised
+from tarsus.hardware.plant.tick_record import TickRecord
 from tarsus.hardware.telemetry.log import TelemetryLog, read_log
 
 STRIDER = tarsus.load_robot("strider")
@@ -106,6 +107,22 @@ def test_a_log_of_another_robot_is_not_read(tmp_path):
     assert len(read_log(tmp_path / "telemetry.csv", STRIDER)[0]) == 0
     with pytest.raises(InputError, match="no table of telemetry of this robot: its columns are others"):
         read_log(tmp_path / "telemetry.csv", random_quadruped(0))
+
+
+def test_a_row_that_was_cut_off_is_left_out(tmp_path):
+    angles = np.full((6, 3), np.radians(-12.3456))
+    shared = dict.fromkeys(("asked", "sent", "measured"), angles) | dict.fromkeys(("temperatures", "loads"), angles * 0)
+    with TelemetryLog(STRIDER, tmp_path) as log:
+        for tick in range(3):
+            log.write(TickRecord(time=tick * 0.02, voltage=11.1, fault="füße" if tick == 2 else "", **shared))
+    path = tmp_path / "telemetry.csv"
+    content = path.read_bytes()
+    last = content.rfind(b"\r\n", 0, -2) + 2
+    for size in range(last, len(content)):
+        path.write_bytes(content[:size])
+        times, _, measured = read_log(path, STRIDER)
+        np.testing.assert_allclose(times, [0.0, 0.02])
+        np.testing.assert_allclose(measured[-1], angles)
 
 
 def test_physics_runs_the_same_controller():

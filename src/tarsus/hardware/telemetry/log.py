@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import io
 import json
 import math
 import os
@@ -147,7 +148,7 @@ def _columns(robot: Robot) -> list[str]:
 def read_log(
     path: str | os.PathLike[str], robot: Robot
 ) -> tuple[Float[np.ndarray, "n"], Float[np.ndarray, "n legs 3"], Float[np.ndarray, "n legs 3"]]:
-    """Return times [s], and the joint angles sent and measured, from the table of a log [rad].
+    """Return times [s], and the joint angles sent and measured, from the whole rows of the table of a log [rad].
 
     Parameters
     ----------
@@ -170,8 +171,10 @@ def read_log(
     """
     joints = robot.legs * len(JOINTS)
     try:
-        with open(path, encoding="utf-8", newline="") as file:
-            head, *rows = csv.reader(file)
+        content = Path(path).read_bytes()
+        # A full disk or a kill cuts the last row off, maybe within a number.
+        whole = content[: content.rfind(b"\n") + 1].decode()
+        head, *rows = csv.reader(io.StringIO(whole, newline=""))
         if head[:-1] != _columns(robot):
             raise ValueError("its columns are others")
         size = 2 + 3 * joints
