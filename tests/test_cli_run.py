@@ -328,9 +328,29 @@ def test_keys_of_a_terminal(monkeypatch):
         monkeypatch.setattr(sys, "stdin", terminal)
         with Keyboard() as keyboard:
             assert keyboard.read() == []
-            os.write(master, b"w\x1b[Cz x")
-            time.sleep(0.05)
-            assert keyboard.read() == [KEYS[key][0] for key in "wd x"]
+
+            def pressed(sent):
+                os.write(master, sent)
+                time.sleep(0.05)
+                return keyboard.read()
+
+            def named(keys):
+                return [KEYS[key][0] for key in keys]
+
+            assert pressed(b"w\x1b[Cz x") == named("wd x")
+            assert pressed(b"\x1bOA\x1bOB\x1b[D\x1b[A") == named("wsaw")
+            # Delete, Home, F5, F1, Ctrl and up, Alt and x, Alt and Delete, Alt and left.
+            for other in (b"[3~", b"[1~", b"[15~", b"OP", b"[1;5A", b"x", b"\x1b[3~", b"\x1b[D"):
+                assert pressed(b"a\x1b" + other + b"d") == named("ad")
+            # What arrives in parts.
+            assert pressed(b"w\x1b") == named("w")
+            assert pressed(b"[") == []
+            assert pressed(b"3") == []
+            assert pressed(b"~\x1b[Bd") == named("sd")
+            # The escape key swallows no other.
+            assert pressed(b"\x1b") == []
+            assert keyboard.read() == []
+            assert pressed(b" ") == pressed(b"\x1b\x1b ") == named(" ")
             os.close(master)
             assert keyboard.read() is None
 

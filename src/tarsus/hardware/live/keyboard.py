@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import os
+import re
 import select
 import sys
 from types import TracebackType
@@ -33,7 +34,10 @@ KEYS: dict[str, tuple[Input, str]] = {
 }
 """Keys, what they command, and what that is called."""
 
-_ARROWS = {"\x1b[A": "w", "\x1b[B": "s", "\x1b[D": "a", "\x1b[C": "d"}
+# Terminals have two modes, in which arrows send different sequences.
+_ARROWS = {f"\x1b{mode}{arrow}": key for mode in "[O" for arrow, key in zip("ABDC", "wsad", strict=True)}
+# What other keys send, also together with Alt, contains characters that are keys. A stop after the escape key is one.
+_SEQUENCE = re.compile(r"\x1b+(?:\[[0-?]*[ -/]*[@-~]|O[0-?]*[@-~]|(?= )|[^\x1b\[O])")
 
 
 class Keyboard:
@@ -55,6 +59,7 @@ class Keyboard:
         self._file = sys.stdin.fileno()
         self._termios: Any = termios
         self._before: Any = None
+        self._begun = ""
 
     def __enter__(self) -> Self:
         """Take keys without waiting for the end of a line."""
@@ -75,6 +80,8 @@ class Keyboard:
     def read(self) -> list[Input] | None:
         """Return what was pressed since the last time; None where the terminal is gone."""
         if not select.select([self._file], [], [], 0)[0]:
+            # A sequence comes at once, so that was the escape key: it must not swallow the next one.
+            self._begun = ""
             return []
         try:
             data = os.read(self._file, 1024)
@@ -82,7 +89,7 @@ class Keyboard:
             return None
         if not data:
             return None
-        text = data.decode("utf-8", "ignore")
-        for arrow, key in _ARROWS.items():
-            text = text.replace(arrow, key)
-        return [KEYS[key][0] for key in text if key in KEYS]
+        text = self._begun + data.decode("utf-8", "ignore")
+        keys, escape, begun = _SEQUENCE.sub(lambda found: _ARROWS.get(found[0], ""), text).partition("\x1b")
+        self._begun = escape + begun
+        return [KEYS[key][0] for key in keys if key in KEYS]
