@@ -322,6 +322,29 @@ def test_a_driver_who_falls_silent_stops_the_robot():
     assert gone.over(0.0, output)
 
 
+def test_body_heights_add_up_and_stop_soon_after_the_last_one():
+    up, controller = Input(body_height=0.005), RobotController(STRIDER)
+    start = float(controller.output.body.position[2])
+    live = LiveCommands(Scripted([up, up], [], [up], [up] * 10, [up]), speeds=(1, 1, 1))
+
+    def height():
+        return live.command(0.0, controller.output, lambda *_: None).body_height
+
+    assert height() == pytest.approx(start + 0.01)
+    assert height() is None
+    assert height() == pytest.approx(start + 0.015)
+    # A key that is kept down asks for more than the body can do meanwhile.
+    assert height() == height() == pytest.approx(start + 0.02)
+    # After sitting down, the height is what it is.
+    lying, standing = RobotController(STRIDER, start="lying"), controller
+    live = LiveCommands(Scripted([up, up], [up], [up]), speeds=(1, 1, 1))
+    assert height() == pytest.approx(start + 0.01)
+    controller = lying
+    assert height() is None
+    controller = standing
+    assert height() == pytest.approx(start + 0.005)
+
+
 def test_keys_of_a_terminal(monkeypatch):
     master, slave = pty.openpty()
     with os.fdopen(slave, "r") as terminal:

@@ -13,6 +13,8 @@ from tarsus.hardware.transport.clock import Clock, SystemClock
 __all__ = ["Input", "InputDevice", "LiveCommands"]
 
 _NO_TWIST = (0.0, 0.0, 0.0)
+# How far the commanded body height may be from the present one, so that the body stops soon after the last input [m].
+_AHEAD = 0.02
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -75,6 +77,7 @@ class LiveCommands:
         self._twist = _NO_TWIST
         self._heard = self._clock.now()
         self._quit = False
+        self._height: float | None = None
 
     def command(self, time: float, output: ControlOutput, note: Callable[[str, str], None]) -> Command:  # noqa: ARG002
         """Return the command for the next tick."""
@@ -91,13 +94,25 @@ class LiveCommands:
                 changes["state"] = each.state
             if each.gait:
                 changes["gait"] = each.gait
-            if each.body_height and output.state.upright:
-                changes["body_height"] = float(output.body.position[2]) + each.body_height
+        changes |= self._new_height(output, sum(each.body_height for each in inputs or ()))
         if any(self._twist) and (self._quit or now - self._heard > self._deadman):
             self._twist = _NO_TWIST
             note("command", "stop" if self._quit else f"nothing heard for {self._deadman:g} s: stop")
         vx, vy, wz = (share * speed for share, speed in zip(self._twist, self._speeds, strict=True))
         return Command(twist=(vx, vy, wz), **changes)
+
+    def _new_height(self, output: ControlOutput, change: float) -> dict[str, float]:
+        """Return the body height to command, if it is to change: the commanded one with the change."""
+        if not output.state.upright:
+            self._height = None
+            return {}
+        if not change:
+            return {}
+        # The body takes its time: the height that it has would leave out what was asked for in the meantime.
+        present = float(output.body.position[2])
+        wanted = (present if self._height is None else self._height) + change
+        self._height = min(max(wanted, present - _AHEAD), present + _AHEAD)
+        return {"body_height": self._height}
 
     def over(self, time: float, output: ControlOutput) -> bool:  # noqa: ARG002
         """Return whether the run is over: the driver has quit, and the robot stands still."""
