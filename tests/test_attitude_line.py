@@ -25,16 +25,17 @@ from tarsus.hardware import (
 
 
 class Line:
-    """A line on which a test sends."""
+    """A line on which a test sends, after the end of a line that has begun before."""
 
     def __init__(self):
         self.clock, self.data, self.closed = ManualClock(), b"", False
+        self._begun = b"50,3,0\n"
 
     def now(self):
         return self.clock.now()
 
     def discard(self):
-        data, self.data = self.data, b""
+        data, self.data, self._begun = self._begun + self.data, b"", b""
         return data
 
     def close(self):
@@ -70,6 +71,22 @@ def test_what_is_no_line_changes_nothing(text):
     line.data = b"\n4,5,6\n9,9"
     imu.read()
     assert np.degrees(imu.attitude) == pytest.approx((4, 5))
+
+
+def test_a_line_whose_beginning_is_missing_is_none():
+    imu, line = sensor()
+    # The line has sent the end of another one.
+    assert imu.read() == math.inf
+    line.data = b"-12.50,3,0\n-12"
+    imu.read()
+    assert np.degrees(imu.attitude) == pytest.approx((-12.5, 3))
+    for data in (b"4" * 300, b"5.0,6,0\n", b"7,"):
+        line.data = data
+        imu.read()
+        assert np.degrees(imu.attitude) == pytest.approx((-12.5, 3))
+    line.data = b"8,0\n"
+    imu.read()
+    assert np.degrees(imu.attitude) == pytest.approx((7, 8))
 
 
 @pytest.mark.parametrize("seed", range(5))
@@ -112,7 +129,7 @@ def test_the_port_of_the_calibration_is_opened():
     master, slave = pty.openpty()
     tty.setraw(slave)
     imu = AttitudeLine(Mounting(port=os.ttyname(slave)))
-    os.write(master, b"1,2,3\n")
+    os.write(master, b"9,8,7\n1,2,3\n")
     time.sleep(0.05)
     imu.read()
     assert np.degrees(imu.attitude) == pytest.approx((1, 2))

@@ -15,7 +15,7 @@ from tarsus.representation import represented
 
 __all__ = ["AttitudeLine"]
 
-# Longer than any line of three numbers: of text without an end of line only this many bytes are kept.
+# Longer than any line of three numbers: a line that goes on after this many bytes is left out.
 _LONGEST = 200
 _NUMBER = re.compile(rb"[-+]?\d+(?:\.\d*)?")
 _LARGEST = 360.0
@@ -35,7 +35,7 @@ class AttitudeLine:
     Attributes
     ----------
     attitude : (float, float) or None
-        Roll and pitch of B, z along gravity; None until a line has come [rad].
+        Roll and pitch of B, z along gravity; None until a whole line has come [rad].
     time : float
         When that came, on the clock of the line [s].
 
@@ -49,7 +49,8 @@ class AttitudeLine:
         self._line = transport or SerialTransport(mounting.port, mounting.baud)
         # The sensor's axes in B.
         self._mounted = np.asarray(Pose.from_rpy(*mounting.rpy).rotation)
-        self._rest = b""
+        # What has come of a line. Its beginning is missing at first: the port opens while the sensor sends.
+        self._rest, self._begun_late = b"", True
         self.attitude: tuple[float, float] | None = None
         self.time = -math.inf
 
@@ -63,8 +64,11 @@ class AttitudeLine:
         """
         self._rest += self._line.discard()
         *lines, self._rest = self._rest.split(b"\n")
-        self._rest = self._rest[-_LONGEST:]
-        for line in reversed(lines):
+        whole = lines[1:] if self._begun_late else lines
+        self._begun_late = self._begun_late and not lines
+        if len(self._rest) > _LONGEST:
+            self._rest, self._begun_late = b"", True
+        for line in reversed(whole):
             angles = _angles(line)
             if angles is not None:
                 world = np.asarray(Pose.from_rpy(*angles).rotation) @ self._mounted.T
