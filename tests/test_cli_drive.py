@@ -113,6 +113,7 @@ def test_a_robot_that_never_stands_has_no_margin_and_no_loads(tmp_path):
     [
         ("at 0 s: wlak 1 m/s", (), "no command is called 'wlak'. Did you mean 'walk'?"),
         ("nothing.toml", (), "nothing.toml can't be read"),
+        ("walk 0.05 m/s", (), "no file 'walk 0.05 m/s'; a timeline has the form 'at 0 s: walk 50 mm/s; at 5 s: stop'"),
         ("at 0 s: stop", ("--rate", "5"), "rate is 5 Hz; it must be from 20 to 1000 Hz"),
         ("at 0 s: stop", ("--rate", "nan"), "is not a number"),
         ("at 0 s: foot_target XX x 1 mm y 1 mm z 1 mm", (), "no leg is called 'XX'"),

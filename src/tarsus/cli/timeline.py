@@ -31,5 +31,7 @@ def timeline_of(text: str, rate: float | None) -> Scenario:
         raise InputError("the scenario is empty; give a TOML file, or commands such as 'at 0 s: walk 50 mm/s'")
     # Text that begins with "at " is a timeline, unless a file has that name.
     is_timeline = text.lstrip().startswith("at ") and not os.path.isfile(text)
+    if " " in text and not is_timeline and not os.path.exists(text):
+        raise InputError(f"there is no file {text!r}; a timeline has the form 'at 0 s: walk 50 mm/s; at 5 s: stop'")
     found = scenario_from_text(text) if is_timeline else load_scenario(text)
     return found if rate is None else dataclasses.replace(found, rate=rate)
