@@ -265,7 +265,8 @@ def test_files_that_are_none(tmp_path):
     for content, message in [
         (b"\xff", "not UTF-8"),
         (b"a" * (2**20 + 1), "larger than 1 MiB"),
-        (b"x", "not valid TOML"),
+        (b"x", "line 1, at the end: not valid TOML"),
+        (b'robot = "strider\n', r"line 1, column 17: not valid TOML: .*Likely cause: a quote is missing"),
     ]:
         (tmp_path / "c.toml").write_bytes(content)
         with pytest.raises(CalibrationError, match=message):

@@ -288,7 +288,9 @@ def test_problems_of_a_file_are_reported_with_the_line_of_their_table(tmp_path):
 @pytest.mark.parametrize(
     ("content", "wanted"),
     [
-        (b"at = 5 5", "this is not TOML"),
+        (b"at = 5 5", r"bad.toml: line 1, column 8: not valid TOML: .*; in: at = 5 5"),
+        (b'start = "lying\n', r"bad.toml: line 1, column 15: not valid TOML: .*Likely cause: a quote is missing"),
+        (b"at = " + b"9" * 5000, "bad.toml: a number has too many digits"),
         (b"\xff\xfe", "byte 0 is not UTF-8"),
         (b"#" * (2**20 + 1), "larger than 1 MiB"),
     ],

@@ -1,4 +1,4 @@
-"""Parsing of robot files, and the likely cause where a text is not valid TOML."""
+"""Parsing of robot files, and the likely cause where a text, also of other files, is not valid TOML."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from typing import Any
 
 from tarsus.errors import RobotFileError
 
-__all__ = ["parse_toml"]
+__all__ = ["parse_toml", "toml_problem"]
 
 
 def parse_toml(text: str, *, where: str) -> dict[str, Any]:
@@ -30,13 +30,26 @@ def parse_toml(text: str, *, where: str) -> dict[str, Any]:
     """
     try:
         return tomllib.loads(text, parse_float=Decimal)
-    except tomllib.TOMLDecodeError as error:
-        problem = _NOT_JSON if _is_json(text) else _not_toml(str(error), text)
-    except RecursionError:
-        problem = "lists or tables are nested too deeply; a robot file has three levels at most"
-    except (ValueError, ArithmeticError):
-        problem = "a number has too many digits or too large an exponent"
-    raise RobotFileError(where, [problem])
+    except (ValueError, ArithmeticError, RecursionError) as error:
+        json_text = isinstance(error, tomllib.TOMLDecodeError) and _is_json(text)
+        raise RobotFileError(where, [_NOT_JSON if json_text else toml_problem(error, text)]) from None
+
+
+def toml_problem(error: Exception, text: str) -> str:
+    """Return what is wrong with a text that is not valid TOML: with its line and, where it is known, the likely cause.
+
+    Parameters
+    ----------
+    error : Exception
+        A `ValueError`, `ArithmeticError` or `RecursionError` of the TOML parser.
+    text : str
+        The text.
+    """
+    if isinstance(error, tomllib.TOMLDecodeError):
+        return _not_toml(str(error), text)
+    if isinstance(error, RecursionError):
+        return "lists or tables are nested too deeply; no key takes more than a few levels"
+    return "a number has too many digits or too large an exponent"
 
 
 _NOT_JSON = (

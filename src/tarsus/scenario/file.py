@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from tarsus.errors import InputError
+from tarsus.robot.parse import toml_problem
 from tarsus.robot.special_file import is_pipe_or_device
 from tarsus.robot.writer import toml_string, toml_text
 from tarsus.scenario.document import decimal_document, document_error, plain, scenario_from_document
@@ -48,11 +49,12 @@ def load_scenario(path: str | os.PathLike[str]) -> Scenario:
         raise InputError(f"{where} is larger than 1 MiB; a scenario is a few kilobytes of text")
     try:
         text = content.decode("utf-8-sig")
-        document = tomllib.loads(text, parse_float=Decimal)
     except UnicodeDecodeError as error:
         raise InputError(f"{where}: byte {error.start} is not UTF-8: not a text file") from None
+    try:
+        document = tomllib.loads(text, parse_float=Decimal)
     except (ValueError, ArithmeticError, RecursionError) as error:
-        raise InputError(f"{where}: this is not TOML: {error}") from None
+        raise InputError(f"{where}: {toml_problem(error, text)}") from None
     lines = [number for number, line in enumerate(text.splitlines(), 1) if re.match(r"\s*\[\[\s*at\s*\]\]", line)]
     return scenario_from_document(document, where=where, lines=lines)
 

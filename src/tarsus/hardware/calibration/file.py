@@ -13,6 +13,7 @@ from tarsus.hardware.calibration.document import fields_from_document
 from tarsus.hardware.calibration.fields import CalibrationFields
 from tarsus.hardware.calibration.lines import key_lines
 from tarsus.hardware.calibration.written_document import decimal_document
+from tarsus.robot.parse import toml_problem
 from tarsus.robot.robot import Robot
 from tarsus.robot.special_file import is_pipe_or_device
 from tarsus.robot.writer import toml_text
@@ -65,7 +66,7 @@ def parse_calibration(text: str, *, where: str, folder: Path, robot: Robot | Non
     try:
         document = tomllib.loads(text, parse_float=Decimal)
     except (ValueError, ArithmeticError, RecursionError) as error:
-        raise CalibrationError(where, [f"not valid TOML: {error}"]) from None
+        raise CalibrationError(where, [toml_problem(error, text)]) from None
     return fields_from_document(document, where=where, folder=folder, robot=robot, lines=key_lines(text))
 
 
