@@ -517,6 +517,23 @@ def test_impossible_boards_are_refused():
         missing.write_goals({0: 1500})
 
 
+def test_a_board_whose_supply_was_off_is_prepared_again_when_it_is_looked_for():
+    bus, device = opened("pca9685")
+    drive(bus, {1: 1200.0})
+    assert device.pulses[1] == pytest.approx(1200, abs=3)
+    for address in device._boards:
+        device._boards[address] = device._fresh()
+    drive(bus, {1: 1200.0})
+    assert device.pulses[1] == 0.0
+    assert set(bus.scan(IDS).values) == set(IDS)
+    assert device.pulses[1] == 0.0
+    drive(bus, {1: 1300.0})
+    assert device.pulses[1] == pytest.approx(1300, abs=3)
+    # A board that works goes on with its pulses.
+    bus.scan(IDS)
+    assert device.pulses[1] == pytest.approx(1300, abs=3)
+
+
 def test_unknown_buses_list_the_known():
     with pytest.raises(UnknownNameError, match="Did you mean 'feetech-sts'"):
         hardware.open_bus("feetech-stx", "nowhere")

@@ -99,10 +99,9 @@ class Pca9685Bus(BoardBus):
         return "PCA9685"
 
     def _prepare(self, address: int, *, always: bool = False) -> None:
-        """Set rate and mode of a board at its first use, ending its pulses; `always` checks later that it answers."""
-        if address in self._ready:
-            if always:
-                self._transport.read(address, 0, 1)
+        """Set rate and mode of a board at its first use, ending its pulses; `always` does so again where it sleeps."""
+        # A board sleeps after its own supply was off. That is not looked for with each goal, which would take longer.
+        if address in self._ready and not (always and self._transport.read(address, 0, 1)[0] & codec.SLEEP):
             return
         self._transport.write(address, codec.end_all())
         for data in (*codec.mode(sleep=True), codec.set_prescale(self._prescale), *codec.mode(sleep=False)):
