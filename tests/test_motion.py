@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from gait_robots import point_feet, ring
+from gait_robots import point_feet, preset, ring
 from tarsus.errors import InputError
 from tarsus.gait.gait import Gait
 from tarsus.gait.motion import Motion
@@ -152,6 +152,33 @@ def test_out_of_reach_names_time_leg_and_reason():
     assert motion.problems[0].endswith(f"{miss[worst, leg] * 1000:.1f} mm away")
     assert " mm too far. In the ground frame G the target is (" in motion.problems[0]
     assert not motion.ok
+
+
+@pytest.mark.parametrize("tilt", [(0.0, 0.0), (0.03, 0.05)])
+def test_a_body_too_low_names_its_depth_and_the_height_that_works(tilt):
+    def at(height):
+        return plan_walk(
+            preset("strider"), TRIPOD, straight_path(0.2), body_height=height, swing_height=0.01, body_tilt=tilt
+        )
+
+    (problem,) = at(0.011).problems
+    roll, pitch = np.abs(tilt)
+    below = 80 * math.sin(roll) * math.cos(pitch) + 120 * math.sin(pitch) + 25 * math.cos(roll) * math.cos(pitch)
+    start, least = problem.removesuffix(" mm is needed").split("; a body height of at least ")
+    assert start == f"body too low: at 0.00 s its underside is {below - 8 - 11:.1f} mm below the ground"
+    assert below - 8 <= float(least) < below - 8 + 0.1 + 1e-6
+    assert at(float(least) / 1000).ok
+
+
+def test_a_body_on_its_way_downhill_is_not_too_low():
+    level = walk()
+    down = np.array([0.0, 0.0, -0.3])
+    lower = dataclasses.replace(
+        level, feet=level.feet + down, body=Pose(level.body.rotation, level.body.position + down)
+    )
+    assert lower.ok
+    lying = dataclasses.replace(level, feet=level.feet - down)
+    assert not any(problem.startswith("body too low") for problem in lying.problems)
 
 
 def test_with_three_left_legs_in_the_air_the_robot_tips_over():

@@ -19,6 +19,7 @@ from tarsus.kinematics.pose import Pose
 from tarsus.kinematics.reach import Reach
 from tarsus.kinematics.solution import IKSolution
 from tarsus.kinematics.stability import stability_margin
+from tarsus.kinematics.underside import FLOOR_TOLERANCE, floor_depth, too_low_text
 from tarsus.representation import Rows, represented
 from tarsus.robot.joint_limits import joint_limits, servo_speeds
 from tarsus.robot.robot import JOINTS, Robot
@@ -168,18 +169,28 @@ class Motion:
 
     @property
     def ok(self) -> bool:
-        """Whether the motion is possible: reach, branch, stability, distance between feet, joint speeds."""
+        """Whether the motion is possible: reach, body height, branch, stability, feet's distance, joint speeds."""
         return not self.problems
 
     def _problems(self) -> Iterator[str]:
         if (self.reach != Reach.OK).any():
             yield self._why_unreachable()
+        yield from self._too_low()
         jumps = list(self._jumps())
         yield from jumps
         yield from self._tips_over()
         yield from self._feet_too_close()
         if not jumps:  # no cycle time makes a jump slow enough
             yield from self._too_fast()
+
+    def _too_low(self) -> Iterator[str]:
+        """Yield the greatest depth of the body; on ground that is not level, below the lowest foot."""
+        ground = np.minimum(self.feet[..., 2].min(-1), 0.0)
+        depth = np.asarray(floor_depth(self.robot, self.body)) + ground
+        worst = int(np.argmax(depth))
+        if depth[worst] > FLOOR_TOLERANCE:
+            low = too_low_text(float(depth[worst]), float(self.body.position[worst, 2] - ground[worst]))
+            yield f"body too low: at {self.time[worst]:.2f} s its underside is {low}"
 
     def _jumps(self) -> Iterator[str]:
         """Yield the largest jump of a leg that changes its inverse-kinematics branch."""
