@@ -188,6 +188,20 @@ def test_blocks_do_not_change_the_result(monkeypatch):
         np.testing.assert_array_equal(getattr(cut, part), getattr(whole, part))
 
 
+def test_a_body_below_the_ground_is_not_possible():
+    heights, strider = np.array([0.005, 0.0169, 0.017, 0.1]), robot_of("strider")
+
+    def cycle(height):
+        robot = stack_robots([strider] * 4) if height.shape else strider
+        found = cycle_torques(robot, TRIPOD, stroke=0.02, body_height=height, phases=4)
+        return found.body_depth, found.ok
+
+    for depth, ok in (cycle(heights), jax.jit(cycle)(jnp.asarray(heights))):
+        np.testing.assert_allclose(depth, 0.017 - heights, atol=1e-9)
+        np.testing.assert_array_equal(ok, [False, False, True, True])
+    assert not cycle(heights[0])[1]
+
+
 def test_tipping_robot():
     back = hexapod(body_com=np.array([-0.7, 0.0, 0.0]))
     options = {"stroke": 0.05, "body_height": 0.11, "swing_height": 0.02, "phases": 8}

@@ -14,10 +14,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from tarsus.arrays import Array, as_floats, broadcast_shapes, is_traced, namespace, require_finite
+from tarsus.arrays import Array, as_floats, broadcast_shapes, is_traced, namespace, require_finite, stack_last
 from tarsus.errors import InputError
 from tarsus.gait.gait import Gait
+from tarsus.kinematics.pose import Pose
 from tarsus.kinematics.stance import default_body_height, default_stance, default_swing_height
+from tarsus.kinematics.underside import FLOOR_TOLERANCE, floor_depth
 from tarsus.load.cycle_sweep import CyclePhases, CycleSweep
 from tarsus.load.payload import Payload, as_payload
 from tarsus.representation import Rows, represented
@@ -53,6 +55,8 @@ class CycleTorques:
         Ground on foot [N].
     balanced : array of bool, shape (..., phases)
         Whether there is an equilibrium; if not, torques and forces are those at the onset of tipping.
+    body_depth : array, shape (...)
+        Depth of the body's lowest point below the ground [m]; negative above it.
     """
 
     phases: Float[np.ndarray, "phases"]
@@ -62,6 +66,7 @@ class CycleTorques:
     torques: Float[Array, "*#batch phases legs 3"]
     forces: Float[Array, "*#batch phases legs 3"]
     balanced: Bool[Array, "*#batch phases"]
+    body_depth: Float[Array, "*#batch"]
 
     def _rows(self) -> Rows:
         """Return the greatest torque of each kind of joint: least, median and greatest of all designs."""
@@ -82,9 +87,10 @@ class CycleTorques:
 
     @cached_property
     def ok(self) -> Bool[Array, "*batch"]:
-        """Whether all feet are within reach and the robot is in equilibrium at every phase, array of bool ``(...)``."""
+        """Whether the body is above the ground, and all feet are within reach and in equilibrium at every phase."""
         xp = namespace(self.reach, self.balanced)
-        return xp.all(self.reach == 0, axis=(-2, -1)) & xp.all(self.balanced, axis=-1)
+        feet = xp.all(self.reach == 0, axis=(-2, -1)) & xp.all(self.balanced, axis=-1)
+        return feet & (self.body_depth <= FLOOR_TOLERANCE)
 
 
 def cycle_torques(
@@ -172,6 +178,7 @@ def _result(sweep: CycleSweep, rows: tuple[Shaped[Array, "..."], ...], batch: tu
         return xp.permute_dims(xp.reshape(values, (*front, *batch)), (*axes, *reversed(range(len(front)))))
 
     angles, torques, forces = (batch_first(values, 3, legs, phase_count) for values in rows[:3])
+    height, zero = sweep.body_height, xp.zeros_like(sweep.body_height)
     return CycleTorques(
         phases=cycle.phases,
         contacts=cycle.contacts,
@@ -180,4 +187,5 @@ def _result(sweep: CycleSweep, rows: tuple[Shaped[Array, "..."], ...], batch: tu
         torques=torques,
         forces=forces,
         balanced=batch_first(rows[4], phase_count),
+        body_depth=floor_depth(sweep.robot, Pose(position=stack_last(xp, (zero, zero, height)))),
     )
