@@ -362,6 +362,7 @@ def test_no_box_is_compared_with_legs_in_one_line():
 def test_body_in_the_ground():
     robot = hexapod(body_size=np.array([0.2, 0.16, 0.15]), gait=GaitDefaults(body_height=0.07))
     assert "into the ground" in codes(robot)["body-in-ground"].what
+    assert "body-in-ground" not in codes(robot.replace(foot_radius=np.full(6, 0.006)))
 
 
 def test_masses_without_an_explanation():

@@ -166,8 +166,10 @@ def test_no_leg_reaches_its_foothold():
 
 def test_body_below_the_ground():
     problems = standing("strider", z=-0.090).summary()["problems"]
-    assert any(problem.startswith("the body box is 5.0 mm below the ground") for problem in problems)
-    assert not any("box" in problem for problem in standing("phoenix", z=-0.05).summary()["problems"])
+    assert problems == []
+    low = standing("strider", z=-0.100).summary()
+    assert low["problems"] == ["the body is 7.0 mm below the ground; raise the body by that distance"]
+    assert not any("the body is" in problem for problem in standing("phoenix", z=-0.05).summary()["problems"])
 
 
 def test_no_feasible_fraction_with_knees_down():

@@ -7,6 +7,8 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from tarsus.kinematics.pose import Pose
+from tarsus.kinematics.underside import floor_depth
 from tarsus.plausibility.dimensions import Dimensions
 from tarsus.plausibility.mirror import mirror_partners
 from tarsus.plausibility.units import unit_causes
@@ -238,7 +240,7 @@ def _body_in_ground(robot: Robot) -> Iterator[PlausibilityWarning]:
         return
     half = float(np.asarray(robot.body_size)[2]) * 500
     height = robot.gait.body_height * 1000
-    if half >= height:
+    if floor_depth(robot, Pose(position=(0.0, 0.0, robot.gait.body_height))) >= 0:
         yield PlausibilityWarning(
             code="body-in-ground",
             where="gait.body_height_mm",

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -13,9 +12,10 @@ import numpy as np
 from tarsus.kinematics.body import reachable_fraction
 from tarsus.kinematics.pose import Pose
 from tarsus.kinematics.reach import Reach
-from tarsus.kinematics.rest import CORNERS, RestingPose
+from tarsus.kinematics.rest import RestingPose
 from tarsus.kinematics.solution import IKSolution
 from tarsus.kinematics.stability import stability_margin
+from tarsus.kinematics.underside import FLOOR_TOLERANCE, floor_depth
 from tarsus.robot.estimates import MASS_KEYS, estimate_text
 from tarsus.robot.robot import JOINTS, Robot
 
@@ -72,9 +72,9 @@ class Standing:
         problems = [] if bool(self.solution.ok) else self.solution.explain().splitlines()
         if self.solution.knee == "down":
             problems += knee_lines(self.solution)
-        depth = self._body_depth()
-        if depth > 1e-9:
-            problems.append(f"the body box is {depth * 1000:.1f} mm below the ground; raise the body by that distance")
+        depth = float(floor_depth(self.solution.robot, self.body))
+        if depth > FLOOR_TOLERANCE:
+            problems.append(f"the body is {depth * 1000:.1f} mm below the ground; raise the body by that distance")
         if not self.contacts.any():
             problems.append("no foot is on the ground")
         elif self.margin < 0:
@@ -82,13 +82,6 @@ class Standing:
                 f"the robot tips: its centre of mass is {-self.margin * 1000:.1f} mm outside its support polygon"
             )
         return problems
-
-    def _body_depth(self) -> float:
-        """Return the depth of the lowest corner of the body box below the ground [m]."""
-        size = self.solution.robot.body_size
-        if size is None:
-            return -math.inf
-        return -float(np.asarray(self.body @ (CORNERS * np.asarray(size)))[:, 2].min())
 
     @property
     def feasible_fraction(self) -> float | None:
