@@ -67,6 +67,12 @@ def test_a_body_that_is_not_displaced_has_no_feasible_fraction_of_its_displaceme
     assert "of this displacement" not in run("pose", "strider", "--body-height", "-10").stdout
 
 
+def test_a_body_in_the_ground_is_not_feasible():
+    stdout = run("pose", "strider", "--z", "-109.9").stdout
+    assert "the body is 16.9 mm below the ground" in stdout
+    assert "feasible with every foot on its foothold: 84.6 % of this displacement" in stdout
+
+
 def test_zero_has_no_sign():
     assert "pitch 0.00 deg, body height 0.0 mm" in run("rest", "mithi", "--all", "0,0,0").stdout
 

@@ -169,7 +169,16 @@ def test_body_below_the_ground():
     assert problems == []
     low = standing("strider", z=-0.100).summary()
     assert low["problems"] == ["the body is 7.0 mm below the ground; raise the body by that distance"]
+    assert low["feasible_fraction"] == pytest.approx(0.93, abs=1e-5)
     assert not any("the body is" in problem for problem in standing("phoenix", z=-0.05).summary()["problems"])
+
+
+def test_a_displacement_is_possible_up_to_where_the_robot_tips():
+    heavy = standing(load_robot("strider").replace(body_com=np.array([0.5, 0.0, 0.0])), x=0.1)
+    assert (heavy.solution.ok, heavy.margin < 0) == (True, True)
+    upright = standing(heavy.solution.robot, x=0.1 * heavy.feasible_fraction)
+    assert 0 < heavy.feasible_fraction < 1
+    assert upright.margin == pytest.approx(0, abs=1e-6)
 
 
 def test_no_feasible_fraction_with_knees_down():

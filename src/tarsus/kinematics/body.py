@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -10,10 +11,11 @@ from tarsus.arrays import Array, namespace, stack_last
 from tarsus.errors import InputError
 from tarsus.kinematics.inverse import inverse_kinematics
 from tarsus.kinematics.pose import Pose
+from tarsus.kinematics.solution import IKSolution
 from tarsus.robot.robot import Robot, require_robot
 
 if TYPE_CHECKING:
-    from jaxtyping import Float
+    from jaxtyping import Bool, Float
 
 __all__ = ["coxa_frames", "reachable_fraction"]
 
@@ -48,7 +50,14 @@ def coxa_frames(robot: Robot) -> Pose:
     return Pose(rotation, stack_last(xp, (g.mount_x, g.mount_y, g.mount_z)))
 
 
-def reachable_fraction(robot: Robot, feet: Float[Array, "legs 3"], start: Pose, goal: Pose) -> float:
+def reachable_fraction(
+    robot: Robot,
+    feet: Float[Array, "legs 3"],
+    start: Pose,
+    goal: Pose,
+    *,
+    also: Callable[[IKSolution], Bool[np.ndarray, "n"]] | None = None,
+) -> float:
     """Return the fraction of a motion between two body poses during which all feet reach their footholds.
 
     Position, roll, pitch and yaw are interpolated linearly, each angle in the direction of the smaller change.
@@ -61,6 +70,8 @@ def reachable_fraction(robot: Robot, feet: Float[Array, "legs 3"], start: Pose, 
         Footholds in G [m].
     start, goal : Pose
         Poses of B in G; single poses.
+    also : callable, optional
+        A further condition: from the solutions at ``n`` poses, whether each is possible ``(n,)``.
 
     Returns
     -------
@@ -82,7 +93,8 @@ def reachable_fraction(robot: Robot, feet: Float[Array, "legs 3"], start: Pose, 
     def reached(fractions: np.ndarray) -> Array:
         roll, pitch, yaw = rpy[:, None] + turn[:, None] * fractions
         body = Pose.from_rpy(roll, pitch, yaw, position + fractions[:, None] * move)
-        return np.asarray(inverse_kinematics(robot, feet, body).ok)
+        solution = inverse_kinematics(robot, feet, body)
+        return np.asarray(solution.ok if also is None else solution.ok & also(solution))
 
     low, high = 0.0, 1.0
     for _ in range(_ROUNDS):

@@ -56,10 +56,14 @@ class Standing:
         return self.solution.body or Pose()
 
     @property
+    def grounded(self) -> Bool[np.ndarray, "legs"]:
+        """Which footholds are on the ground ``(legs,)``: all."""
+        return np.ones(self.solution.robot.legs, dtype=bool)
+
+    @property
     def contacts(self) -> Bool[np.ndarray, "legs"]:
-        """Which feet reach their footholds, array of bool ``(legs,)``."""
-        reaches: np.ndarray = np.asarray(self.solution.reach) == Reach.OK
-        return reaches
+        """Which feet are on the ground ``(legs,)``: those that reach their foothold, if it is."""
+        return np.asarray((np.asarray(self.solution.reach) == Reach.OK) & self.grounded)
 
     @cached_property
     def margin(self) -> float:
@@ -85,10 +89,16 @@ class Standing:
 
     @property
     def feasible_fraction(self) -> float | None:
-        """Feasible fraction of the displacement; None with the knees down, where it is not computed."""
+        """Fraction of the displacement up to which the pose is possible; None with the knees down: not computed."""
         if self.solution.knee != "up":
             return None
-        return reachable_fraction(self.solution.robot, self.solution.feet, self.start, self.body)
+
+        def stands(solution: IKSolution) -> Bool[np.ndarray, "n"]:
+            robot, body = solution.robot, solution.body or Pose()
+            margin = stability_margin(robot, solution.angles, body, self.grounded)
+            return np.asarray((floor_depth(robot, body) <= FLOOR_TOLERANCE) & (margin >= 0))
+
+        return reachable_fraction(self.solution.robot, self.solution.feet, self.start, self.body, also=stands)
 
     def summary(self) -> dict[str, Any]:
         """Return the numbers of the pose, with units in the keys."""

@@ -37,10 +37,9 @@ class OnFootholds(Standing):
     """A robot on footholds, some of which may be above the ground."""
 
     @property
-    def contacts(self) -> Bool[np.ndarray, "legs"]:
-        """Which feet are in contact ``(legs,)``: those that reach their foothold, if it is on the ground."""
-        on_ground = np.asarray(self.solution.feet)[:, 2] <= _ON_GROUND
-        return np.asarray(super().contacts & on_ground)
+    def grounded(self) -> Bool[np.ndarray, "legs"]:
+        """Which footholds are on the ground ``(legs,)``."""
+        return np.asarray(np.asarray(self.solution.feet)[:, 2] <= _ON_GROUND)
 
 
 @dataclass(frozen=True, eq=False)
