@@ -19,6 +19,7 @@ from tarsus.kinematics.inverse import inverse_kinematics
 from tarsus.kinematics.leg import forward_kinematics
 from tarsus.kinematics.mass import total_mass
 from tarsus.kinematics.pose import Pose
+from tarsus.kinematics.stance import default_stance
 from tarsus.load.acceleration import differences
 from tarsus.load.inverse_dynamics import motion_torques
 from tarsus.load.torque import joint_torques
@@ -195,6 +196,20 @@ def test_a_robot_that_starts_inside_the_terrain_is_refused():
     heights[19:22, 19:22] = 0.2
     with pytest.raises(InputError, match=r"starts inside the terrain: 'body' is \d+\.\d mm deep in 'ground' at \("):
         started(terrain=HeightField(heights=heights, size=(1.0, 1.0)))
+
+
+def test_a_body_inside_level_ground_is_told_the_body_height_that_it_needs():
+    plant = SimulatedPlant(STRIDER)
+
+    def start_at(height):
+        angles = inverse_kinematics(STRIDER, default_stance(STRIDER, height)).require().angles
+        body = Pose(position=(0.0, 0.0, height))
+        plant.start(dataclasses.replace(RobotController(STRIDER).output, angles=angles, body=body))
+
+    needed = "starts inside the terrain: the underside of its body is 12.0 mm below the ground; a body height of at "
+    with pytest.raises(InputError, match=f"{needed}least 17.0 mm is needed"):
+        start_at(0.005)
+    start_at(0.017)
 
 
 @pytest.mark.parametrize("sensors", ["hobby", "smart"])

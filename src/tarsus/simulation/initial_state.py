@@ -12,6 +12,7 @@ from tarsus.control.control_output import ControlOutput
 from tarsus.errors import InputError
 from tarsus.kinematics.leg import forward_kinematics
 from tarsus.kinematics.rest import CORNERS
+from tarsus.kinematics.underside import too_low_text
 from tarsus.robot.robot import Robot
 from tarsus.simulation.engine import mujoco_module
 from tarsus.simulation.servos.servo_table import ServoTable
@@ -26,6 +27,8 @@ __all__ = ["check_stability", "place"]
 
 # Penetration beyond which a robot counts as inside the terrain at the start [m].
 _INSIDE = 0.003
+# Terrain counts as level under the robot if its heights differ by less than this [m].
+_LEVEL = 0.001
 # Greatest (timestep * angular frequency)^2 of servo springs; explicit integration becomes unstable at 4.
 _STIFFEST = 1.0
 
@@ -60,9 +63,13 @@ def place(robot: Robot, terrain: Terrain, output: ControlOutput, model: Any, dat
     if data.ncon and contact.dist.min() < -_INSIDE:
         deepest = int(np.argmin(contact.dist))
         names = [model.geom(int(geom)).name for geom in contact.geom[deepest]]
-        x, y, z = contact.pos[deepest].tolist()
+        depth, (x, y, z) = -float(contact.dist[deepest]), contact.pos[deepest].tolist()
+        around = np.append(points[:, :2], [[x, y]], axis=0)
+        if names[1] == "body" and np.ptp(terrain.height(*around.T)) < _LEVEL:
+            low = too_low_text(depth, float(output.body.position[2]))
+            raise InputError(f"the robot starts inside the terrain: the underside of its body is {low}")
         raise InputError(
-            f"the robot starts inside the terrain: {names[1]!r} is {-1000 * contact.dist[deepest]:.1f} mm deep in "
+            f"the robot starts inside the terrain: {names[1]!r} is {1000 * depth:.1f} mm deep in "
             f"{names[0]!r} at ({x:.3f}, {y:.3f}, {z:.3f}) m; lower the terrain there or clear the start"
         )
 
