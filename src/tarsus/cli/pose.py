@@ -59,7 +59,7 @@ def pose(
 
     Prints the joint angles. A leg that can't reach its foothold is in the air; the centre of mass and the support
     polygon of the other feet determine whether the robot stands. The exit code is 0 only if all legs reach their
-    footholds and the robot stands.
+    footholds, the body is above the ground and the robot stands.
     """
     from tarsus.report.tables import angle_table, number, verdict
 
