@@ -138,7 +138,8 @@ def test_settings_of_a_scenario_hold_on_servos_and_in_physics(tmp_path):
         assert code == 1
         assert any("the robot is lying" in text for text in found["problems"])
         if found["timing"]:
-            assert found["timing"]["rate_hz"] == pytest.approx(50, rel=0.1)
+            # However busy the computer is: ticks that it misses are counted.
+            assert found["timing"]["ticks"] + found["timing"]["missed"] == pytest.approx(25, abs=2)
 
 
 @pytest.mark.parametrize(
