@@ -13,7 +13,9 @@ from tarsus.gait.gait import Gait
 from tarsus.gait.stance.stability import StabilityCheck, support_sets
 from tarsus.incremental import complete
 from tarsus.kinematics.inverse import inverse_kinematics
+from tarsus.kinematics.pose import Pose
 from tarsus.kinematics.stability import stability_margin
+from tarsus.kinematics.underside import FLOOR_TOLERANCE, floor_depth
 
 BODIES = [
     (0.3, 0.0, 0.0, 0.0, 0.0, 0.0),
@@ -44,8 +46,36 @@ def test_every_leg_has_room_at_the_fraction_and_the_named_one_has_none_a_thousan
     share, cause = complete(reachable_fraction(setup.robot, now, target))
     assert 0 < share < 1
     assert (room(setup, now.towards(target, share)) >= 0).all()
-    farther = room(setup, now.towards(target, share + 1e-3))
-    assert farther[[name == cause.leg for name in setup.robot.leg_names]].max() < 0
+    farther = now.towards(target, share + 1e-3)
+    if cause.leg:
+        assert room(setup, farther)[[name == cause.leg for name in setup.robot.leg_names]].max() < 0
+    else:
+        assert cause.reason == "the body would be below the ground"
+        assert depth(setup.robot, now.towards(target, share)) <= FLOOR_TOLERANCE < depth(setup.robot, farther)
+
+
+def depth(robot, stance):
+    """The depth of the body below the floor."""
+    return float(floor_depth(robot, Pose.from_rpy(*stance.posture[3:6], stance.posture[:3])))
+
+
+def test_a_body_goes_down_to_the_ground_and_no_farther_level_or_tilted():
+    setup, now, target = ends("strider", (0.0, 0.0, -0.105, 0.0, 0.0, 0.0))
+    down, tilt = 0.085 * np.eye(7)[2], 0.3 * np.eye(7)[4]
+    low, tilted = (now._replace(posture=now.posture - down + more) for more in (0.0, tilt))
+    for start, end in ((now, target), (low, tilted)):
+        share, cause = complete(reachable_fraction(setup.robot, start, end))
+        assert cause.reason == "the body would be below the ground"
+        assert 0 <= -depth(setup.robot, start.towards(end, share)) < 2e-4
+
+
+def test_a_body_that_is_too_low_already_may_rise_but_not_sink():
+    setup, now, _ = ends("strider", (0.0, 0.0, 0.0, 0.0, 0.0, 0.0))
+    low, lower = (now._replace(posture=now.posture - [0, 0, down, 0, 0, 0, 0]) for down in (0.095, 0.099))
+    assert depth(setup.robot, low) > 0
+    assert complete(reachable_fraction(setup.robot, low, now)) == (1.0, None)
+    share, cause = complete(reachable_fraction(setup.robot, low, lower))
+    assert (share, cause.reason) == (0.0, "the body would be below the ground")
 
 
 def test_a_path_that_is_feasible_as_a_whole_has_no_cause():

@@ -10,6 +10,7 @@ from tarsus.control.command import Command
 from tarsus.control.limitation import LimitationKind
 from tarsus.control.readings import SensorReadings
 from tarsus.control.walk_controller import WalkController
+from tarsus.errors import UnreachableError
 
 DT = 0.02
 
@@ -161,3 +162,15 @@ def test_a_walk_that_its_joints_slow_down_says_so():
     (found,) = controller.limitations
     assert found.text() == "twist: 50 % of the command; joint speed and acceleration"
     assert controller.twist[0] == pytest.approx(full / 2)
+
+
+def test_a_body_goes_no_lower_than_the_ground_and_starts_no_lower():
+    controller = controller_of()
+    run(controller, Command(body_height=0.005), 16)
+    (limitation,) = controller.limitations
+    assert (limitation.kind, limitation.cause) == (LimitationKind.BODY_HEIGHT, "the body would be below the ground")
+    assert controller.body.position[2] == pytest.approx(0.017, abs=5e-4)
+    with pytest.raises(
+        UnreachableError, match=r"12.0 mm below the ground; a body height of at least 17.0 mm is needed"
+    ):
+        WalkController(controller.robot, body_height=0.005)

@@ -13,6 +13,8 @@ from tarsus.control.workspace.foot_workspace import reach_cause, rest_margin
 from tarsus.gait.stance.stability import StabilityCheck
 from tarsus.gait.stance.stance_geometry import SWING_HEIGHT, StanceGeometry, joint_margin, rotation_rows
 from tarsus.incremental import Incremental
+from tarsus.kinematics.pose import Pose
+from tarsus.kinematics.underside import FLOOR_TOLERANCE, floor_depth
 from tarsus.robot.robot import Robot
 
 if TYPE_CHECKING:
@@ -20,6 +22,7 @@ if TYPE_CHECKING:
 
 __all__ = ["balanced_fraction", "first_increment", "reachable_fraction"]
 
+_TOO_LOW = Cause("the body would be below the ground")
 # Number of samples of the whole path; how often the interval that fails is then halved, down to 1/2048 of the path.
 _SAMPLES, _HALVINGS = 16, 7
 # How many stances are examined in one tick.
@@ -50,11 +53,15 @@ def reachable_fraction(robot: Robot, start: StanceTarget, end: StanceTarget) -> 
         What limits it.
     """
     fractions = np.arange(1, _SAMPLES + 1) / _SAMPLES
-    fails = (_reach_margin(robot, [start.towards(end, part) for part in fractions.tolist()]) < 0).any(axis=-1)
+    stances = [start.towards(end, part) for part in fractions.tolist()]
+    # A body that is too low already may rise.
+    deepest = max(_depth(robot, start), FLOOR_TOLERANCE)
+    fails = (_depths(robot, stances) > deepest) | (_reach_margin(robot, stances) < 0).any(axis=-1)
     yield
 
     def works(fraction: float) -> bool:
-        return bool((rest_margin(robot, start.towards(end, fraction).stand) >= 0).all())
+        stance = start.towards(end, fraction)
+        return bool(_depth(robot, stance) <= deepest and (rest_margin(robot, stance.stand) >= 0).all())
 
     if not fails.any():
         if works(1.0):
@@ -63,7 +70,8 @@ def reachable_fraction(robot: Robot, start: StanceTarget, end: StanceTarget) -> 
     # Search below the first sample that fails; where all are in reach, it is the end that has no room.
     feasible, infeasible = yield from _bracket(works, float(fractions[fails.argmax()]) if fails.any() else 1.0)
     yield
-    return feasible, reach_cause(robot, start.towards(end, infeasible).stand)
+    beyond = start.towards(end, infeasible)
+    return feasible, _TOO_LOW if _depth(robot, beyond) > deepest else reach_cause(robot, beyond.stand)
 
 
 def balanced_fraction(
@@ -86,6 +94,18 @@ def balanced_fraction(
 
     feasible, _ = yield from _bracket(works, fraction)
     return feasible
+
+
+def _depths(robot: Robot, stances: list[StanceTarget]) -> Float[np.ndarray, "n"]:
+    """Return the depth of the body below level ground in each stance [m]."""
+    postures = np.array([stance.posture for stance in stances])
+    roll, pitch, yaw = postures[:, 3:SWING_HEIGHT].T
+    return np.asarray(floor_depth(robot, Pose.from_rpy(roll, pitch, yaw, postures[:, :3])))
+
+
+def _depth(robot: Robot, stance: StanceTarget) -> float:
+    """Return the depth of the body below level ground [m]."""
+    return float(_depths(robot, [stance])[0])
 
 
 def _bracket(works: Callable[[float], bool], infeasible: float) -> Incremental[tuple[float, float]]:

@@ -20,6 +20,8 @@ from tarsus.gait.stance.stance_geometry import sway_extremes
 from tarsus.gait.stance.velocity_limits import VelocityLimits, with_stroke_limits
 from tarsus.gait.walk_setup import WalkSetup, require_number
 from tarsus.incremental import Incremental, complete
+from tarsus.kinematics.pose import Pose
+from tarsus.kinematics.underside import FLOOR_TOLERANCE, floor_depth, too_low_text
 from tarsus.robot.joint_limits import JointLimits
 from tarsus.robot.robot import Robot
 
@@ -68,8 +70,12 @@ class TransitionPlanner:
         InputError
             If stance width or cycle time are not finite, or out of their range.
         UnreachableError
-            If the robot can't stand and step in this stance.
+            If the robot can't stand and step in this stance, or its body is below the ground.
         """
+        depth = float(floor_depth(self.robot, Pose(position=(0.0, 0.0, setup.body_height))))
+        if depth > FLOOR_TOLERANCE:
+            low = too_low_text(depth, setup.body_height)
+            raise UnreachableError(f"the robot can't stand in this stance: the underside of its body is {low}")
         stance_width = require_float("stance_width", stance_width, finite=True)
         if cycle_time is not None:
             cycle_time = require_number("cycle_time", cycle_time, zero=False)
