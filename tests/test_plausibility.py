@@ -392,7 +392,7 @@ def test_servos_with_other_units():
     assert "ounce inches" in servo_codes(stall_torque=280.0)["servo-torque"].cause
     assert "ounce inches" not in servo_codes(stall_torque=20.0)["servo-torque"].cause
     assert "radians" in servo_codes(travel=np.radians(4.7))["servo-travel"].cause
-    assert "rpm" in servo_codes(no_load_speed=0.0)["servo-speed"].remedy
+    assert "rpm" in servo_codes(no_load_speed=60.0)["servo-speed"].remedy
     assert servo_codes() == {}
     assert servo_codes(mass=None, stall_torque=100.0) == {}
 

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 import tarsus.robot.catalogue as catalogue
-from tarsus.errors import UnknownNameError
+from tarsus.errors import InputError, UnknownNameError
 from tarsus.robot.catalogue import list_servos, load_servo, servo_catalogue
 from tarsus.robot.schema import ServoFigures
 from tarsus.robot.servo import Servo
@@ -97,6 +97,22 @@ def test_buses(name, buses):
 def test_every_servo_of_the_catalogue_has_a_bus():
     assert all(servo.buses for servo in servo_catalogue().values())
     assert Servo(name="own", stall_torque=1.0).buses == frozenset()
+
+
+@pytest.mark.parametrize(
+    ("figures", "line"),
+    [
+        ({"stall_torque": 0.0}, "servo 'own': stall_torque is 0 N m; it must be greater than 0"),
+        (
+            {"stall_torque": 1.0, "no_load_speed": -2.0},
+            "servo 'own': no_load_speed is -2 rad/s; it must be greater than 0; None where unknown",
+        ),
+    ],
+)
+def test_torque_and_speed_of_a_servo_are_greater_than_0(figures, line):
+    with pytest.raises(InputError) as caught:
+        Servo(name="own", **figures)
+    assert str(caught.value) == line
 
 
 def test_names_are_case_insensitive():

@@ -75,6 +75,8 @@ def assert_same_bits(a, b):
 NAN, INF = float("nan"), float("inf")
 
 
+SERVO = {"name": "mine", "stall_torque_nm": 2}
+
 MISTAKES = [
     (("leg", "coxa_mm"), "68", 'leg.coxa_mm = "68": must be a number from 0 to 10000 mm'),
     (("leg", "coxa_mm"), True, "leg.coxa_mm = true: must be a number from 0 to 10000 mm"),
@@ -130,6 +132,8 @@ MISTAKES = [
     (("leg", "servo"), {"coxa": {"name": "a"}}, "leg.servo.coxa.stall_torque_nm: missing; stall torque [N m]"),
     (("leg", "servo"), {"coxa": "AX-12A", "knee": "AX-12A"}, "leg.servo.knee: unknown key; known here: coxa,"),
     (("leg", "servo"), {"name": "a", "stall_torque_nm": 1, "mass_kg": 1}, "leg.servo.mass_kg: "),
+    (("leg", "servo"), SERVO | {"stall_torque_nm": 0}, "stall_torque_nm = 0: must be from 0.0001 to 10000 N m"),
+    (("leg", "servo"), SERVO | {"no_load_rad_s": 0}, "no_load_rad_s = 0: must be from 0.001 to 10000 rad/s"),
     (("legs",), ..., "legs: missing; the legs, counter-clockwise from the front left"),
     (("legs",), {"name": "a"}, "legs: must be a list of tables, each under [[legs]]"),
     (("legs", 2), "rear", 'legs[2] = "rear": must be a table of keys'),
@@ -164,7 +168,7 @@ def test_errors_name_key_value_and_what_is_allowed(key, value, line):
     ],
 )
 def test_a_servo_has_both_ends_of_its_supply_or_none(figures, line):
-    (problem,) = problems(changed(("leg", "servo"), {"name": "mine", "stall_torque_nm": 2, **figures}))
+    (problem,) = problems(changed(("leg", "servo"), SERVO | figures))
     assert problem == f"leg.servo: {line}" + (": give both or neither" if "go together" in line else "")
 
 
@@ -514,9 +518,9 @@ def shared_or_not(elements, legs, *tail):
 SERVOS = st.sampled_from(list(servo_catalogue().values())) | st.builds(
     Servo,
     name=st.text(min_size=1, max_size=5) | st.just("MG996R"),
-    stall_torque=floats(0, 1e4),
+    stall_torque=floats(1e-4, 1e4),
     torque_at=optional(floats(0, 1000)),
-    no_load_speed=optional(floats(0, 1e4)),
+    no_load_speed=optional(floats(1e-3, 1e4)),
     mass=optional(floats(0, 99)),
     travel=optional(floats(0, 600)),
     supply=optional(st.tuples(floats(0, 9), floats(9, 1000))),
@@ -896,6 +900,8 @@ def test_the_schema_accepts_every_preset(name):
         (("leg", "limits_deg", "coxa"), [-181, 0]),
         (("gait", "name"), "gallop"),
         (("leg", "servo"), 3),
+        (("leg", "servo"), SERVO | {"stall_torque_nm": 0}),
+        (("leg", "servo"), SERVO | {"no_load_rad_s": 0}),
         (("name",), ...),
     ],
 )

@@ -62,7 +62,7 @@ def _servo(servo: Servo, where: str) -> Iterator[PlausibilityWarning]:
             what=f"{speed:.4g} rad/s, {f'less than {SPEED[0]:g}' if slow else f'more than {SPEED[1]:g}'}",
             cause="this looks like the seconds for 60 degrees" if slow else "this looks like rpm or deg/s",
             remedy=f"{speed:.4g} s for 60 degrees is {math.pi / 3 / speed:.3g} rad/s"
-            if slow and speed > 0
+            if slow
             else f"{speed:.4g} rpm is {speed * math.pi / 30:.3g} rad/s, {speed:.4g} deg/s is "
             f"{math.radians(speed):.3g} rad/s",
         )

@@ -41,6 +41,9 @@ Mass: TypeAlias = Annotated[Decimal, Number(0.000001, 10_000, "kg")]
 MassOrZero: TypeAlias = Annotated[Decimal, Number(0, 10_000, "kg")]
 Volts: TypeAlias = Annotated[Decimal, Number(0, 1000, "V")]
 Torque: TypeAlias = Annotated[Decimal, Number(0, 10_000, "N m")]
+# Loads and servo models divide by these two, which an unknown value leaves empty.
+StallTorque: TypeAlias = Annotated[Decimal, Number(0.0001, 10_000, "N m")]
+Speed: TypeAlias = Annotated[Decimal, Number(0.001, 10_000, "rad/s")]
 Name: TypeAlias = Annotated[str, Text()]
 Remark: TypeAlias = Annotated[str, Text(empty=True)]
 
@@ -87,10 +90,10 @@ class ServoFigures(Table):
     """Data of a servo that is not in the catalogue."""
 
     name: Name = Field(description="Name of the model.")
-    stall_torque_nm: Torque = Field(description="Stall torque [N m]; kg.cm times 0.0980665.")
+    stall_torque_nm: StallTorque = Field(description="Stall torque [N m]; kg.cm times 0.0980665.")
     torque_at_v: Volts | None = Field(default=None, description="Supply voltage of the stall torque [V].")
     rated_torque_nm: Torque | None = Field(default=None, description="Rated continuous torque [N m].")
-    no_load_rad_s: Annotated[Decimal, Number(0, 10_000, "rad/s")] | None = Field(
+    no_load_rad_s: Speed | None = Field(
         default=None, description="No-load speed [rad/s]; 1.047 divided by the seconds for 60 deg."
     )
     speed_at_v: Volts | None = Field(default=None, description="Supply voltage of the no-load speed [V].")

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from tarsus.errors import InputError
 from tarsus.representation import represented
 
 __all__ = ["Servo"]
@@ -40,6 +41,11 @@ class Servo:
         Manufacturer, command interface, gear material, feedback.
     confidence, source, note : str
         Confidence (A from the manufacturer, B from a secondary copy, C mostly general knowledge), source and remarks.
+
+    Raises
+    ------
+    InputError
+        If the stall torque or the no-load speed is not greater than 0.
     """
 
     name: str
@@ -59,6 +65,15 @@ class Servo:
     confidence: str = ""
     source: str = ""
     note: str = ""
+
+    def __post_init__(self) -> None:
+        for name, value, unit in (
+            ("stall_torque", self.stall_torque, "N m"),
+            ("no_load_speed", self.no_load_speed, "rad/s"),
+        ):
+            if value is not None and value <= 0:
+                unknown = "" if name == "stall_torque" else "; None where unknown"
+                raise InputError(f"servo {self.name!r}: {name} is {value:g} {unit}; it must be greater than 0{unknown}")
 
     @property
     def buses(self) -> frozenset[str]:
