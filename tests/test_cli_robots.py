@@ -90,7 +90,7 @@ def test_new_copies_a_file_and_keeps_what_it_can(tmp_path):
     assert "body" in run("robots", "new", "x", "--from", first, "--out", second).stderr or second.exists()
     second.unlink(missing_ok=True)
     # A name over several lines can't be replaced where it stands.
-    first.write_text(template_text("first").replace('"first"', '"""first\n"""'), encoding="utf-8")
+    first.write_text(template_text("first").replace('"first"', '"""\nfirst"""'), encoding="utf-8")
     assert run("robots", "new", "x", "--from", first, "--out", second).exit_code == 0
     assert load_robot(second) == load_robot(first).replace(name="x")
     code, document = run_json("robots", "new", "y", "--from", "freenove", "--out", tmp_path / "y.toml")

@@ -164,6 +164,21 @@ def test_what_cannot_be_exported_is_refused():
         to_urdf(tarsus.stack_robots([strider, strider]))
 
 
+@pytest.mark.parametrize("name", ["my--robot", "robot-", "a&<b>", "größe"])
+def test_any_name_of_a_robot_leaves_a_urdf_well_formed(name):
+    root = ET.fromstring(to_urdf(load_robot("strider").replace(name=name)))
+    assert root.get("name") == name
+
+
+@pytest.mark.parametrize("name", ["front_left", "front  left"])
+def test_legs_whose_links_would_have_the_same_name_are_refused(name):
+    names = load_robot("strider").leg_names
+    robot = load_robot("strider").replace(leg_names=(names[0], name, *names[2:]))
+    with pytest.raises(InputError, match=f"legs 'front left' and '{name}' would both have the link front_left_coxa"):
+        to_urdf(robot)
+    assert mujoco.MjModel.from_xml_string(to_mjcf(robot)).njnt == 1 + 18
+
+
 def test_the_command_writes_a_file_or_prints_it(tmp_path):
     path = tmp_path / "strider.urdf"
     assert run("export", "urdf", "strider", "--out", path).output == f"wrote {path}\n"

@@ -81,6 +81,12 @@ def test_arrays_of_other_libraries_are_kept():
         ({"servos": ((None,) * 3,) * 5}, "servos must have three entries for each of the 6 legs"),
         ({"servos": ((None,) * 2,) * 6}, "servos must have three entries for each of the 6 legs"),
         ({"coxa": np.ones((2, 6)), "femur": np.ones((3, 6))}, "don't broadcast"),
+        ({"name": 5}, "name of the robot is 5; it must be text"),
+        ({"name": "a\ud800"}, r"'a\\ud800'; it must not contain control characters, such as U\+D800"),
+        (
+            {"leg_names": ["a\tb", *"cdefg"]},
+            r"name of a leg is 'a\\tb'; it must not contain control .*, such as U\+0009",
+        ),
     ],
 )
 def test_wrong_shapes_and_ranges_are_refused(changes, message):

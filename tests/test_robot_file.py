@@ -119,6 +119,8 @@ MISTAKES = [
     (("name",), "", 'name = "": must not be empty'),
     (("name",), "x" * 1001, "must be no longer than 1000 characters, and has 1001"),
     (("name",), "\ud800", "it contains an unpaired surrogate"),
+    (("name",), "a\x01b", "must not contain control characters, such as U+0001"),
+    (("legs", 2, "name"), "rear\nleft", "must not contain control characters, such as U+000A"),
     (
         ("gait", "name"),
         "tripd",
@@ -515,6 +517,10 @@ def shared_or_not(elements, legs, *tail):
     return alike | arrays(elements, legs, *tail)
 
 
+NAMES = st.text(
+    st.characters(exclude_categories=("Cc", "Cs"), exclude_characters="\ufffe\uffff"), min_size=1, max_size=50
+)
+
 SERVOS = st.sampled_from(list(servo_catalogue().values())) | st.builds(
     Servo,
     name=st.text(min_size=1, max_size=5) | st.just("MG996R"),
@@ -540,8 +546,8 @@ def robots(draw):
     lengths = floats(1e-6, 10)
     servo = draw(optional(SERVOS))
     return Robot(
-        name=draw(st.text(min_size=1)),
-        leg_names=draw(st.lists(st.text(min_size=1, max_size=9), min_size=legs, max_size=legs, unique=True)),
+        name=draw(NAMES),
+        leg_names=draw(st.lists(NAMES, min_size=legs, max_size=legs, unique=True)),
         mount_position=np.stack([radii * np.cos(angles), radii * np.sin(angles), heights], axis=-1),
         mount_yaw=draw(arrays(floats(-6.28, 6.28), legs)),
         coxa=draw(shared_or_not(floats(0, 10), legs)),
@@ -853,7 +859,7 @@ def test_written_strings_are_toml(text):
     assert tomllib.loads(f"x = {toml_string(text)}")["x"] == text
 
 
-@given(name=st.text(min_size=1, max_size=50))
+@given(name=NAMES)
 def test_the_template_loads_under_any_name(tmp_path_factory, name):
     path = tmp_path_factory.getbasetemp() / "template.toml"
     path.write_text(template_text(name), encoding="utf-8", newline="")
@@ -903,6 +909,8 @@ def test_the_schema_accepts_every_preset(name):
         (("leg", "servo"), SERVO | {"stall_torque_nm": 0}),
         (("leg", "servo"), SERVO | {"no_load_rad_s": 0}),
         (("name",), ...),
+        (("name",), "a\x01b"),
+        (("legs", 0, "name"), "a\nb"),
     ],
 )
 def test_the_schema_refuses_what_the_loader_refuses(key, value):

@@ -27,8 +27,8 @@ _PLATE, _LINK_RADIUS, _FOOT_EDGE = 0.002, 0.006, 0.002
 # Fraction of the tibia's mass that goes to the foot, a separate link: Bullet takes a link without inertia to have 1 kg.
 _FOOT_SHARE = 0.01
 _ABOUT = """
- Made by Tarsus from the robot file of {name}. Frames and angles are those of its conventions: B in the body, x forward,
- y to the left, z up; coxae turn about z, femurs and tibias about -y. Inertias are those of uniform boxes. {unknown}
+ Made by Tarsus. Frames and angles are those of its conventions: B in the body, x forward, y to the left, z up; coxae
+ turn about z, femurs and tibias about -y. Inertias are those of uniform boxes. {unknown}
 """
 # Options for MuJoCo, with which the feet and the body stay separate bodies.
 _MUJOCO = {"fusestatic": "false", "discardvisual": "false", "strippath": "false"}
@@ -52,16 +52,17 @@ def to_urdf(robot: Robot) -> str:
     MissingDataError
         If the mass of the body or of a link is unknown.
     InputError
-        If the robot is a batch.
+        If the robot is a batch, or two legs would have links of the same name, as ``front left`` and ``front_left``.
     """
     require_robot(robot)
     if robot.batch_shape:
         raise InputError(f"robot {robot.name!r} is a batch of designs {robot.batch_shape}; expected one robot")
     robot.require_masses()
+    _require_unique_names(robot)
     root = ET.Element("robot", name=robot.name)
     known = all(servo is not None for row in robot.servos for servo in row)
     unknown = "" if known else f"Unknown servos have an effort of {_UNKNOWN_TORQUE:g} N m."
-    root.append(ET.Comment(_ABOUT.format(name=robot.name, unknown=unknown)))
+    root.append(ET.Comment(_ABOUT.format(unknown=unknown)))
     ET.SubElement(ET.SubElement(root, "mujoco"), "compiler", _MUJOCO)
     _add_body(root, robot)
     for leg in range(robot.legs):
@@ -103,6 +104,18 @@ def _add_leg(root: ET.Element, robot: Robot, leg: int) -> None:
     _add_origin(fixed, position)
     ET.SubElement(fixed, "parent", link=parent)
     ET.SubElement(fixed, "child", link=foot)
+
+
+def _require_unique_names(robot: Robot) -> None:
+    first: dict[str, str] = {}
+    for leg, name in enumerate(robot.leg_names):
+        link = _name(robot, leg, JOINTS[0])
+        if link in first:
+            raise InputError(
+                f"robot {robot.name!r}: the legs {first[link]!r} and {name!r} would both have the link {link} in URDF, "
+                "where spaces become underscores; rename one of them"
+            )
+        first[link] = name
 
 
 def _name(robot: Robot, leg: int, part: str) -> str:

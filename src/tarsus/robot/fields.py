@@ -18,6 +18,7 @@ from pydantic_core import CoreSchema, PydanticCustomError, core_schema
 
 from tarsus.errors import nearest_name
 from tarsus.robot.catalogue import list_servos
+from tarsus.robot.plain_name import PLAIN, control_character
 from tarsus.robot.units import to_decimal
 
 __all__ = ["REFUSED", "Choice", "JointRange", "Number", "Numbers", "ServoName", "Text", "refuse"]
@@ -149,9 +150,10 @@ def _likely_angles(value: object) -> str:
 
 @dataclass(frozen=True)
 class Text(_Kind):
-    """A string, not empty unless `empty` allows it."""
+    """A string, not empty unless `empty` allows it, and without control characters if it is a `label`."""
 
     empty: bool = False
+    label: bool = False
 
     def check(self, value: object) -> str:
         """Return the string."""
@@ -163,11 +165,14 @@ class Text(_Kind):
             raise refuse("must not be empty")
         if not value.isascii() and any(0xD800 <= ord(character) <= 0xDFFF for character in value):
             raise refuse("must be valid Unicode text; it contains an unpaired surrogate")
+        if self.label and (code := control_character(value)):
+            raise refuse(f"must not contain control characters, such as {code}")
         return value
 
     def describe(self) -> dict[str, Any]:
         """Return the JSON schema."""
-        return {"type": "string", "minLength": int(not self.empty), "maxLength": _LONGEST_TEXT}
+        pattern = {"pattern": PLAIN} if self.label else {}
+        return {"type": "string", "minLength": int(not self.empty), "maxLength": _LONGEST_TEXT, **pattern}
 
 
 @dataclass(frozen=True)

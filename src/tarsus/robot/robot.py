@@ -15,6 +15,7 @@ from tarsus.errors import InputError, MissingDataError
 from tarsus.representation import Rows, represented
 from tarsus.robot.about import GaitDefaults, Source
 from tarsus.robot.geometry import LegGeometry
+from tarsus.robot.plain_name import require_plain_name
 from tarsus.robot.preset_names import preset_names
 from tarsus.robot.servo import Servo
 from tarsus.robot.shape import JOINTS, OPTIONAL, TAILS, locked
@@ -98,6 +99,9 @@ class Robot:
     sources: tuple[Source, ...] = ()
 
     def __post_init__(self) -> None:
+        require_plain_name("name of the robot", self.name)
+        for leg_name in self.leg_names:
+            require_plain_name(f"{self.name}: name of a leg", leg_name)
         fill = {"femur_axis_offset": (self.legs, 2), "foot_radius": (self.legs,), "body_com": (3,)}
         for name in ("mount_position", "mount_yaw", "coxa", "femur", "tibia", "limits"):
             self._lock(name, getattr(self, name))

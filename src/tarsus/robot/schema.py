@@ -45,6 +45,7 @@ Torque: TypeAlias = Annotated[Decimal, Number(0, 10_000, "N m")]
 StallTorque: TypeAlias = Annotated[Decimal, Number(0.0001, 10_000, "N m")]
 Speed: TypeAlias = Annotated[Decimal, Number(0.001, 10_000, "rad/s")]
 Name: TypeAlias = Annotated[str, Text()]
+Label: TypeAlias = Annotated[str, Text(label=True)]
 Remark: TypeAlias = Annotated[str, Text(empty=True)]
 
 
@@ -196,7 +197,7 @@ class Leg(Table):
 class LegEntry(Leg):
     """One leg: its name and position, and values that differ from [leg]."""
 
-    name: Name = Field(description="Name of the leg, such as front left.")
+    name: Label = Field(description="Name of the leg, such as front left.")
     position_mm: Point = Field(description="Position of the coxa axis: x forward, y left, z up [mm].")
     yaw_deg: Annotated[Decimal, Number(-360, 360, "deg")] = Field(
         description="Direction of the leg: 0 is forward, 90 is left [deg]."
@@ -240,7 +241,7 @@ class SourceEntry(Table):
 class RobotFile(Table):
     """A legged robot for Tarsus: millimetres, degrees, kilograms; x forward, y left, z up."""
 
-    name: Name = Field(description="Name of the robot.")
+    name: Label = Field(description="Name of the robot.")
     body: Body = Body()
     leg: Leg = Leg()
     legs: list[LegEntry] = Field(
