@@ -62,6 +62,11 @@ def test_a_urdf_is_the_robot_in_pinocchio(name):
     np.testing.assert_array_equal(np.sort(limits, axis=0), np.sort(robot.limits.reshape(-1, 2), axis=0))
 
 
+def moments_of(link):
+    inertia = link.find("inertial/inertia")
+    return np.linalg.eigvalsh([[float(inertia.get("i" + "".join(sorted(a + b)))) for a in "xyz"] for b in "xyz"])
+
+
 @pytest.mark.parametrize("name", WITH_MASSES)
 def test_every_link_of_a_urdf_has_an_inertia_that_exists_and_every_foot_a_shape(name):
     """Engines give links without inertia a mass of their own, Bullet 1 kg; feet without shapes sink into the ground."""
@@ -69,14 +74,25 @@ def test_every_link_of_a_urdf_has_an_inertia_that_exists_and_every_foot_a_shape(
     links = {link.get("name"): link for link in root.iter("link")}
     assert len(links) == 1 + 4 * robot.legs
     for link in links.values():
-        inertia = link.find("inertial/inertia")
-        matrix = np.array([[float(inertia.get("i" + "".join(sorted(a + b)))) for a in "xyz"] for b in "xyz"])
-        moments = np.linalg.eigvalsh(matrix)
+        moments = moments_of(link)
         assert 0 < moments[0] <= moments[2] <= moments[0] + moments[1] + 1e-15
         assert float(link.find("inertial/mass").get("value")) > 0
     for leg, tibia in zip(robot.leg_names, robot.tibia, strict=True):
         (shape,) = links["_".join([*leg.split(), "tibia"])].findall("collision")
         assert float(shape.find("origin").get("xyz").split()[0]) == pytest.approx(float(tibia))
+
+
+@pytest.mark.parametrize("centre", [-10.0, -1.5, -0.45, 0.078, 0.7, 10.0])
+def test_a_centre_of_mass_far_from_the_foot_leaves_every_link_an_inertia_that_exists(centre):
+    strider = load_robot("strider")
+    robot = strider.replace(link_com=np.append(strider.link_com[:, :2], np.full((6, 1), centre), axis=1))
+    for link in ET.fromstring(to_urdf(robot)).iter("link"):
+        moments = moments_of(link)
+        assert 0 < moments[0] <= moments[2] <= (moments[0] + moments[1]) * (1 + 1e-9)
+    angles = random_angles(robot)
+    built, data, _ = in_pinocchio(robot, angles)
+    np.testing.assert_allclose(data.com[0], centre_of_mass(robot, angles), atol=1e-12)
+    assert pin.computeTotalMass(built) == pytest.approx(float(total_mass(robot)), rel=1e-12)
 
 
 @pytest.mark.parametrize("name", ["strider", "phantomx"])

@@ -24,7 +24,8 @@ _UNKNOWN_TORQUE = 100.0
 # Thickness of a body of unknown size, radius of the links' cylinders, and edge of the box that stands for a foot of
 # unknown radius [m]: without a shape it would sink into the ground, and a ball's radius would be read back as its own.
 _PLATE, _LINK_RADIUS, _FOOT_EDGE = 0.002, 0.006, 0.002
-# Fraction of the tibia's mass that goes to the foot, a separate link: Bullet takes a link without inertia to have 1 kg.
+# Greatest fraction of the tibia's mass that goes to the foot, a separate link: Bullet takes a link without inertia to
+# have 1 kg.
 _FOOT_SHARE = 0.01
 _ABOUT = """
  Made by Tarsus. Frames and angles are those of its conventions: B in the body, x forward, y to the left, z up; coxae
@@ -39,8 +40,8 @@ def to_urdf(robot: Robot) -> str:
 
     Links are named ``body`` and by leg and link (``front_left_femur``), joints like the link that they move; each foot
     is a link of its own at the end of the tibia (``front_left_foot``), fixed by a joint, with a hundredth of the
-    tibia's mass. The shape that touches the ground belongs to the tibia: the ball of the foot, or a box of 2 mm
-    where its radius is unknown.
+    tibia's mass, or less where the tibia's centre of mass lies far from the foot. The shape that touches the ground
+    belongs to the tibia: the ball of the foot, or a box of 2 mm where its radius is unknown.
 
     Parameters
     ----------
@@ -124,10 +125,13 @@ def _name(robot: Robot, leg: int, part: str) -> str:
 
 def _divided(tibia: RigidBody, foot: Float[np.ndarray, "3"]) -> tuple[RigidBody, RigidBody]:
     """Return the tibia without its foot, and the foot, which together have the tibia's mass, centre and inertia."""
-    mass, small = (1 - _FOOT_SHARE) * tibia.mass, _FOOT_SHARE * tibia.mass
-    centre = (tibia.centre - _FOOT_SHARE * foot) / (1 - _FOOT_SHARE)
-    ball = 0.4 * small * _LINK_RADIUS**2
     along, across, _ = tibia.moments
+    # A mass far from the centre would take more inertia than there is: the rest exists while across >= along / 2.
+    spare, lever2 = across - along / 2, np.sum((foot - tibia.centre) ** 2) + _LINK_RADIUS**2
+    share = min(_FOOT_SHARE, spare / (spare + tibia.mass * lever2)) if spare else _FOOT_SHARE
+    mass, small = (1 - share) * tibia.mass, share * tibia.mass
+    centre = (tibia.centre - share * foot) / (1 - share)
+    ball = 0.4 * small * _LINK_RADIUS**2
     across += tibia.mass * np.sum((tibia.centre - centre) ** 2) - small * np.sum((foot - centre) ** 2) - ball
     divided = RigidBody(mass, centre, (along - ball, across, across), tibia.axis)
     return divided, RigidBody(small, np.zeros(3), (ball, ball, ball), np.zeros(3))
