@@ -30,6 +30,7 @@ TERRAINS = [
     Smooth(seed=3, amplitude=0.05, wavelength=0.8),
     HeightField(heights=GRID, size=(3.0, 2.0)),
     HeightField(heights=np.full((2, 3), -0.02), size=(1.0, 2.0)),
+    HeightField(heights=GRID, size=(99.0, 99.9)),
 ]
 
 
@@ -158,6 +159,8 @@ def test_a_picture_that_cannot_be_read_is_refused(tmp_path, monkeypatch):
         (lambda: HeightField(heights=np.zeros(3), size=(1, 1)), "heights has shape (3,)"),
         (lambda: HeightField(heights=np.full((2, 2), np.nan), size=(1, 1)), "not a finite number"),
         (lambda: HeightField(heights=np.zeros((2, 2)), size=(1, -1)), "size is -1"),
+        (lambda: HeightField(heights=GRID, size=(3, 120)), "size is 120 m; it must be less than 100 m"),
+        (lambda: Smooth(extent=50, wavelength=5), "extent is 50 m; it must be less than 50 m"),
     ],
 )
 def test_a_terrain_that_cannot_be_is_refused(make, message):

@@ -35,7 +35,7 @@ class HeightField:
     heights : array, shape (rows, columns)
         Heights: rows along y, columns along x, both ascending [m].
     size : (float, float)
-        Extent along x and y [m].
+        Extent along x and y, less than 100 m [m].
     friction : float
         Coefficient of friction.
     """
@@ -48,6 +48,8 @@ class HeightField:
         require_number("friction", self.friction, zero=False)
         for extent in self.size:
             require_number("size", extent, zero=False)
+            if extent >= 2 * FAR:
+                raise InputError(f"size is {extent:g} m; it must be less than {2 * FAR:g} m")
         heights = np.array(self.heights, dtype=np.float64)
         if heights.ndim != 2 or min(heights.shape) < 2:
             raise InputError(f"heights has shape {heights.shape}; expected (rows, columns), at least 2 of each")

@@ -13,6 +13,7 @@ from tarsus.gait.walk_setup import require_number
 from tarsus.simulation.seed import require_seed
 from tarsus.simulation.settings import FRICTION
 from tarsus.simulation.terrain.height_field import HeightField
+from tarsus.simulation.terrain.surface import FAR
 
 if TYPE_CHECKING:
     from jaxtyping import Shaped
@@ -36,7 +37,7 @@ class Smooth:
     wavelength : float
         Mean length of the waves; that of each is between half and one and a half times the mean [m].
     extent : float
-        Half the edge of the square field; around it, level ground [m].
+        Half the edge of the square field, less than 50 m; around it, level ground [m].
     clear : float
         Within this distance of the origin the ground is level [m]; over the same distance again it gradually becomes
         uneven.
@@ -58,6 +59,8 @@ class Smooth:
             require_number(name, getattr(self, name), zero=False)
         require_number("clear", self.clear, zero=True)
         require_seed(self.seed)
+        if self.extent >= FAR:
+            raise InputError(f"extent is {self.extent:g} m; it must be less than {FAR:g} m")
         if self.points > _MOST_POINTS:
             raise InputError(
                 f"wavelength is {self.wavelength:g} m; on an extent of {self.extent:g} m it must be at least "
