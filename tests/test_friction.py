@@ -179,3 +179,14 @@ def test_errors(monkeypatch):
     monkeypatch.setitem(sys.modules, "clarabel", None)
     with pytest.raises(MissingDataError, match=r"pip install 'tarsus\[qp\]'"):
         contact_forces_with_friction(robot, angles, Pose(), ALL, friction=0.5)
+
+
+@pytest.mark.parametrize("minimise", ["force", "torque"])
+@pytest.mark.parametrize("batch", [(0,), (2, 0)])
+def test_an_empty_batch_has_no_forces(minimise, batch):
+    angles = np.zeros((*batch, 6, 3))
+    found = contact_forces_with_friction(hexapod(), angles, Pose(), ALL, friction=0.5, minimise=minimise)
+    assert found.forces.shape == (*batch, 6, 3)
+    assert found.residual_force.shape == found.residual_moment.shape == (*batch, 3)
+    assert found.balanced.shape == batch
+    assert found.require() is found

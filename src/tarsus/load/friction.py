@@ -168,7 +168,7 @@ def contact_forces_with_friction(
     weight = np.broadcast_to(mass * strength, batch)
     on_ground = np.nonzero(down.reshape(-1, robot.legs))
     arms = np.broadcast_to(feet, (*batch, robot.legs, 3)).reshape(-1, robot.legs, 3)[on_ground]
-    size = float(np.abs(arms).max()) or 1.0
+    size = float(np.abs(arms).max(initial=0.0)) or 1.0
     square, linear = np.broadcast_to(np.eye(3), (len(arms), 3, 3)), np.zeros((len(arms), 3))
     if minimise == "torque":
         unloaded, _ = joint_torques(robot, angles, body, down, gravity=gravity, forces=np.zeros((robot.legs, 3)))
