@@ -1,3 +1,4 @@
+import math
 import re
 
 import array_api_strict
@@ -19,6 +20,7 @@ from tarsus.kinematics.stance import (
     reachable_band,
     stance_or_nan,
 )
+from tarsus.kinematics.underside import belly_depth
 from tarsus.robot.robot import GaitDefaults, stack_robots
 
 STEPS = 4001
@@ -165,13 +167,43 @@ def test_the_error_names_the_leg_and_the_possible_body_heights():
         "body height 250.0 mm: leg LR does not reach the ground within its joint limits; all legs do at"
     )
     low, high, nearest = (float(v) / 1000 for v in re.findall(r"(-?\d+\.\d) (?:and|mm$|mm,)", text))
-    # The femur at its -80 deg and the tibia upright: 98 sin 80 deg + 120 = 216.51 mm; up, less than 218 mm, in line.
-    assert (low, high, nearest) == (-0.2179, 0.2165, 0.2165)
+    # The femur at its -80 deg and the tibia upright: 98 sin 80 deg + 120 = 216.51 mm; the body lies on the ground at 0.
+    assert (low, high, nearest) == (0.0, 0.2165, 0.2165)
     for works in (low, high, nearest):
         assert np.isfinite(default_stance(robot, works, swing_height=0)).all()
-    for fails in (low - 1e-4, high + 1e-4):
-        with pytest.raises(UnreachableError):
-            default_stance(robot, fails, swing_height=0)
+    with pytest.raises(UnreachableError):
+        default_stance(robot, high + 1e-4, swing_height=0)
+
+
+@pytest.mark.parametrize(
+    ("changes", "least"),
+    [
+        ({"body_size": [0.24, 0.16, 0.05], "foot_radius": np.full(6, 0.008)}, 17.0),
+        ({"body_size": [0.24, 0.16, 0.01], "foot_radius": np.full(6, 0.008)}, 0.0),
+        ({"mount_position": "lower"}, 30.0),
+        ({"mount_position": "higher"}, -400.0),
+    ],
+)
+def test_the_body_heights_that_an_error_names_leave_the_body_above_the_ground(changes, least):
+    robot = plain_hexapod()
+    if "mount_position" in changes:
+        up = {"lower": -0.03, "higher": 0.4}[changes["mount_position"]]
+        changes = {"mount_position": robot.mount_position + np.array([0, 0, up])}
+    with pytest.raises(UnreachableError, match=f"all legs do at body heights between {least} and .* mm"):
+        default_stance(robot.replace(**changes), 0.9, swing_height=0)
+
+
+@pytest.mark.parametrize("size", [3, 30])
+def test_an_error_of_a_large_robot_names_the_ends_of_its_body_heights(size):
+    """Also where it looks at few heights at first: the ends are those at which the legs just reach the ground."""
+    robot = plain_hexapod()
+    lengths = ("mount_position", "coxa", "femur", "tibia")
+    large = robot.replace(**{name: size * getattr(robot, name) for name in lengths})
+    with pytest.raises(UnreachableError) as caught:
+        default_stance(large, -1.0 * size, swing_height=0)
+    low, high, nearest = (float(v) for v in re.findall(r"(-?\d+\.\d) (?:and|mm$|mm,)", str(caught.value)))
+    assert (low, nearest) == (0, 0)
+    assert high == math.floor(size * (0.098 * math.sin(math.radians(80)) + 0.181) * 1e4) / 10
 
 
 @given(robot=robots(), body_height=st.floats(-1, 1), swing_height=st.sampled_from([0.0, 0.03]))
@@ -182,7 +214,7 @@ def test_every_body_height_that_an_error_names_is_possible(robot, body_height, s
         text = str(error)
         assert ("with a swing height of 30.0 mm" in text) == (swing_height > 0)
         if "there is no body height" in text:
-            for height in np.linspace(-0.5, 0.5, 5):
+            for height in belly_depth(robot) + np.linspace(0, 1, 5):
                 with pytest.raises(UnreachableError):
                     default_stance(robot, height, swing_height=swing_height)
             return
@@ -195,7 +227,7 @@ def test_an_error_says_where_no_body_height_is_possible():
     limits = np.array(plain_hexapod().limits)
     limits[0, 1:] = np.deg2rad([[80, 90], [-20, 0]])
     limits[3, 1:] = np.deg2rad([[-80, -70], [-20, 0]])
-    with pytest.raises(UnreachableError, match=r"there is no body height at which all legs do$"):
+    with pytest.raises(UnreachableError, match=r"there is no body height above the ground at which all legs do$"):
         default_stance(plain_hexapod(limits=limits), 0.1)
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
@@ -12,11 +13,12 @@ from tarsus.errors import UnreachableError
 from tarsus.kinematics.nearest import tibia_bend, tibia_branch
 from tarsus.kinematics.reach import ANGLE_TOLERANCE
 from tarsus.kinematics.triangle import direction, to_leg_frame
+from tarsus.kinematics.underside import belly_depth
 from tarsus.robot.geometry import LegGeometry
 from tarsus.robot.robot import Robot, require_robot
 
 if TYPE_CHECKING:
-    from jaxtyping import Bool, Float
+    from jaxtyping import Bool, Float, Int
 
 __all__ = [
     "default_body_height",
@@ -27,6 +29,9 @@ __all__ = [
     "reachable_band",
     "stance_or_nan",
 ]
+
+# Body heights at which a message looks for footholds, before it refines those at the ends.
+_SCANNED = 2000
 
 
 def default_body_height(robot: Robot) -> Float[Array, "..."]:
@@ -303,16 +308,36 @@ def _why_no_stance(
         f"{f'{batch} ' if batch else ''}body height {height:.1f} mm: leg {robot.leg_names[leg]} does not reach the "
         f"ground{lifted} within its joint limits"
     )
-    one = robot.item(where, of=whole)
-    g = one.geometry
-    reach = float((g.femur + g.tibia).max() + np.abs(g.mount_z + g.up).max())
-    # In tenths of a millimetre, so that the body heights are possible as printed.
-    steps = np.arange(-np.ceil(reach * 1e4), np.ceil(reach * 1e4) + 1)
-    possible = steps[~np.isnan(_middle(np, one, -steps / 1e4, np.asarray(rise / 1000))).any(-1)] / 10
+    possible = _possible_heights(robot.item(where, of=whole), height, rise)
     if not len(possible):
-        return f"{text}, and there is no body height at which all legs do"
+        return f"{text}, and there is no body height above the ground at which all legs do"
     nearest = possible[np.argmin(np.abs(possible - height))]
     return (
         f"{text}; all legs do at body heights between {possible.min():.1f} and {possible.max():.1f} mm, "
         f"the nearest is {nearest:.1f} mm"
     )
+
+
+def _possible_heights(robot: Robot, height: float, rise: float) -> Float[np.ndarray, "n"]:
+    """Return the least and the greatest body height at which all legs have a foothold, and those near `height` [mm].
+
+    They are multiples of 0.1 mm, so that they are possible as printed, and leave the body above the ground. Ranges of
+    less than a 2000th of the reach may be missed.
+    """
+
+    def possible(steps: Int[np.ndarray, "n"]) -> Int[np.ndarray, "m"]:
+        missing = np.isnan(_middle(np, robot, -steps / 1e4, np.asarray(rise / 1000))).any(-1)
+        return np.asarray(steps[~missing])
+
+    g, depth = robot.geometry, belly_depth(robot)
+    # Not below the origin either, unless the whole body is above it.
+    least = max(depth - float(robot.foot_radius.min()), min(depth, 0.0))
+    reach = float((g.femur + g.tibia).max() + np.abs(g.mount_z + g.up).max())
+    first, last = math.ceil(least * 1e4), math.ceil(reach * 1e4)
+    stride = max((last - first) // _SCANNED, 1)
+    coarse = possible(np.arange(first, last + 1, stride))
+    if not len(coarse):
+        return coarse / 10
+    ends = coarse[np.array([0, -1, np.argmin(np.abs(coarse - height * 10))])]
+    around = np.unique(ends[:, None] + np.arange(-stride, stride + 1))
+    return possible(around[around >= first]) / 10
