@@ -115,7 +115,7 @@ def cycle_torques(
     gait : Gait
         The gait.
     stroke : array, shape (...)
-        Distance that the body moves during a stance [m].
+        Distance that the body moves during a stance, greater than 0 [m].
     heading : float
         Direction of walking, counter-clockwise from the front [rad].
     body_height : array, shape (...), optional
@@ -157,7 +157,7 @@ def cycle_torques(
         as_floats(xp, value, name=name)
         for name, value in (("stroke", stroke), ("body_height", body_height), ("swing_height", swing_height))
     )
-    require_finite("stroke", stroke)
+    _require_stroke(stroke)
     rest = default_stance(robot, body_height, swing_height=swing_height)
     batch = broadcast_shapes(
         "robot, stroke, body height and swing height",
@@ -167,6 +167,18 @@ def cycle_torques(
     cycle = CyclePhases.of(gait, heading, int(phases))
     sweep = CycleSweep(xp, robot, carried, rest, stroke, body_height, swing_height, batch or (1,), cycle)
     return _result(sweep, sweep.by_blocks() if xp is np else sweep.by_angles(), batch)
+
+
+def _require_stroke(stroke: Float[Array, "*#batch"]) -> None:
+    """Refuse strokes that are not finite or not greater than 0, as `plan_walk` does; traced values can't be checked."""
+    require_finite("stroke", stroke)
+    if is_traced(stroke):
+        return
+    values = np.asarray(stroke)
+    for place in np.argwhere(values <= 0).tolist():
+        value, where = values[tuple(place)], f"[{', '.join(map(str, place))}]" if place else ""
+        words = f"{value:g} m; it must be a finite number, not negative" if value else "0; it must be greater than 0"
+        raise InputError(f"stroke{where} is {words}")
 
 
 def _result(sweep: CycleSweep, rows: tuple[Shaped[Array, "..."], ...], batch: tuple[int, ...]) -> CycleTorques:
