@@ -103,6 +103,20 @@ def test_current_and_battery_life():
     assert f"battery life {drawn['battery_min']:.0f} min" in text
 
 
+def test_a_supply_far_above_the_rated_one_leaves_no_verdict():
+    result = run("loads", "strider", *SHORT, "--supply", "600")
+    assert result.exit_code == 1
+    verdict = result.stdout.splitlines()[-1]
+    assert verdict.startswith(
+        "unknown: LF coxa: DS3225 is rated for 4.8 to 6.8 V; torque and speed are unknown at the "
+    )
+    assert "supply of 600 V, more than 1.5 times that" in verdict
+    sized = run("servos", "strider", *SHORT, "--supply", "12")
+    assert sized.exit_code == 1
+    assert "payload: unknown, as the torque of some servos is unknown" in sized.stdout
+    assert "XL430-W250-T" in sized.stdout
+
+
 @pytest.mark.no_cover
 def test_robot_without_servos(tmp_path):
     save_robot(load_robot("strider").replace(servos=()), tmp_path / "bare.toml")

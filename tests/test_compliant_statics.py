@@ -424,6 +424,8 @@ def test_servos_that_carry_the_robot():
 def test_what_is_missing_or_wrong_is_named():
     with pytest.raises(MissingDataError, match=r"servo of the coxa is unknown, so its stiffness is"):
         compliant_loads(STRIDER.replace(servos=((None,) * 3,) * 6), walk())
+    with pytest.raises(MissingDataError, match=r"unknown at the supply of 12 V, .*, and so is its stiffness"):
+        JointSprings.of(STRIDER, supply=12.0)
     with pytest.raises(MissingDataError, match="mass"):
         compliant_loads(load_robot("mithi"), walk(load_robot("mithi")))
     with pytest.raises(InputError, match="batch of designs"):

@@ -129,7 +129,7 @@ def test_payload_is_limited_to_a_tonne():
 
 def test_largest_payload_errors():
     found = sample_loads()
-    with pytest.raises(MissingDataError, match="the file names none for some joints"):
+    with pytest.raises(MissingDataError, match="the torque of its servos, unknown for some"):
         largest_payload(replace(found, robot=found.robot.replace(servos=())))
     with pytest.raises(UnknownNameError, match="no rule is called 'half'"):
         largest_payload(found, rule="half")

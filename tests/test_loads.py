@@ -18,7 +18,7 @@ from tarsus.kinematics.mass import total_mass
 from tarsus.load.inverse_dynamics import motion_torques
 from tarsus.load.loads import joint_loads
 from tarsus.load.payload import Payload
-from tarsus.load.servo_limits import at_supply, utilisation
+from tarsus.load.servo_limits import at_supply, utilisation, why_not_rated
 from tarsus.load.verdict import BURNOUT_FACTOR, joint_verdicts
 from tarsus.robot.catalogue import load_servo
 from tarsus.robot.file import robot_from_dict, robot_to_dict
@@ -111,6 +111,17 @@ def test_ratings_scale_with_the_voltage(volts):
     assert at_supply(servo, None) == (2.0, 5.0)
     unrated = Servo(name="b", stall_torque=2.0, no_load_speed=5.0)
     assert at_supply(unrated, volts) == (2.0, 5.0)
+
+
+@pytest.mark.parametrize(("volts", "known"), [(7.2, True), (9.0, True), (9.01, False), (600.0, False)])
+def test_ratings_are_unknown_far_above_the_rated_supply(volts, known):
+    servo = Servo(name="a", stall_torque=2.0, torque_at=6.0, no_load_speed=5.0, speed_at=6.0, supply=(4.8, 6.0))
+    assert np.isfinite(at_supply(servo, volts)).tolist() == [known, known]
+    why = "a is rated for 4.8 to 6 V; torque and speed are unknown at the supply of 600 V, more than 1.5 times that"
+    assert why_not_rated(servo, 600.0) == why
+    assert why_not_rated(servo, 9.0) == why_not_rated(servo, None) == ""
+    motion = sample_motion()
+    assert why in joint_loads(motion.robot.replace(servos=((servo,) * 3,) * 6), motion, supply=600.0).assumed
 
 
 def test_unknown_ratings_are_nan():

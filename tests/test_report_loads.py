@@ -133,6 +133,8 @@ def test_servo_with_unknown_no_load_speed():
     assert axes.texts[-1].get_text() == "slow: no-load speed unknown"
     assert not any(len(line.get_xdata()) == 3 for line in axes.lines)
     assert plot_torque_speed(bare()).axes[1].texts[-1].get_text() == "no servo in the robot file"
+    too_high = plot_torque_speed(sample_loads(supply=12.0)).axes[1]
+    assert too_high.texts[-1].get_text() == "no ratings at this supply"
 
 
 # Numbers and text

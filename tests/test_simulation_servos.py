@@ -191,6 +191,8 @@ def test_unknown_servos_are_refused():
     unknown = STRIDER.replace(servos=((load_servo("DS3225"),) * 3,) * 5 + ((load_servo("DS3225"), None, None),))
     with pytest.raises(MissingDataError, match=r"leg front right: the servo of the femur is unknown"):
         ServoTable.of(unknown, "catalogue")
+    with pytest.raises(MissingDataError, match=r"DS3225 is rated for 4.8 to 6.8 V; .* at the supply of 12 V"):
+        ServoModel.of(load_servo("DS3225"), supply=12.0)
     with pytest.raises(MissingDataError, match="a joint has no servo"):
         ServoModel.of(None)
 

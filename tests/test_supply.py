@@ -40,6 +40,14 @@ def test_voltage_changes_the_stall_current_only():
     assert supply_load(with_torques(torques * 20)).peak_current == pytest.approx(4)
 
 
+def test_a_supply_too_high_for_the_ratings_leaves_the_current_without_its_limit():
+    found = with_torques(np.array([0.5, 0, 0, 0, 0, 0.0]), supply=12.0)
+    servo = replace(found.robot.servos[0][0], supply=(4.8, 6.0))
+    rated = replace(found, robot=found.robot.replace(servos=((servo,) * 3,) * 6))
+    assert np.isnan(rated.stall_torque).all()
+    assert supply_load(rated).peak_current == pytest.approx(1)
+
+
 def test_battery_life_is_capacity_over_mean_current():
     ramp = np.linspace(0, 2, samples())[:, None] * np.eye(6)[0]
     drawn = supply_load(with_torques(ramp), capacity=3.0)

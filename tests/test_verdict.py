@@ -142,6 +142,15 @@ def test_unknown_no_load_speed():
         assert not one.fast_enough
 
 
+def test_a_supply_far_above_the_rated_one_leaves_no_verdict():
+    for one in joint_verdicts(sample_loads(supply=12.0)):
+        assert (one.class_name, one.is_sufficient("factor")) == ("unknown", False)
+        assert one.text() == (
+            "DS3225 is rated for 4.8 to 6.8 V; torque and speed are unknown at the supply of 12 V, more than 1.5 times "
+            f"that; {3 * one.peak:.2f} N m required"
+        )
+
+
 @pytest.mark.parametrize("factor", [0.0, -1.0, math.nan, math.inf])
 def test_invalid_safety_factor(factor):
     with pytest.raises(InputError, match="safety_factor is"):

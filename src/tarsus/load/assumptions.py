@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from tarsus.gait.motion import Motion
+from tarsus.load.servo_limits import why_not_rated
 from tarsus.robot.estimates import SERVO_KEY, estimate_text
 from tarsus.robot.robot import JOINTS, Robot
 
@@ -33,6 +34,9 @@ def load_assumptions(robot: Robot, motion: Motion, supply: float | None) -> Iter
         if supply is None:
             voltage = "an unknown voltage" if servo.torque_at is None else f"{servo.torque_at:g} V"
             yield f"{servo.name} at {voltage}, the voltage of its rated stall torque"
+            continue
+        if why := why_not_rated(servo, supply):
+            yield why
             continue
         if servo.torque_at is None or (servo.no_load_speed is not None and servo.speed_at is None):
             yield f"{servo.name}: the voltage of its ratings is unknown; they are used unchanged at {supply:g} V"

@@ -145,7 +145,7 @@ def largest_payload(
     require_rule(rule)
     if np.isnan(base.stall_torque).any():
         raise MissingDataError(
-            f"robot {base.robot.name!r}: the largest payload depends on its servos; the file names none for some joints"
+            f"robot {base.robot.name!r}: the largest payload depends on the torque of its servos, unknown for some"
         )
 
     def carried(mass: float) -> bool:

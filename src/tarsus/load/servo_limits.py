@@ -12,11 +12,16 @@ from tarsus.robot.servo import Servo
 if TYPE_CHECKING:
     from jaxtyping import Float
 
-__all__ = ["at_supply", "utilisation"]
+__all__ = ["MOST_OVERVOLTAGE", "at_supply", "utilisation", "why_not_rated"]
+
+MOST_OVERVOLTAGE = 1.5
+"""Supply voltage over the highest rated one up to which torque and speed are extrapolated."""
 
 
 def at_supply(servo: Servo | None, supply: float | None) -> tuple[float, float]:
     """Return a servo's stall torque [N m] and no-load speed [rad/s] at a supply voltage; NaN where unknown.
+
+    They are unknown at more than `MOST_OVERVOLTAGE` times the highest voltage for which the servo is rated.
 
     Parameters
     ----------
@@ -37,9 +42,27 @@ def at_supply(servo: Servo | None, supply: float | None) -> tuple[float, float]:
             return math.nan
         return value * supply / rated_voltage if supply and rated_voltage else value
 
-    if servo is None:
+    if servo is None or why_not_rated(servo, supply):
         return math.nan, math.nan
     return scaled(servo.stall_torque, servo.torque_at), scaled(servo.no_load_speed, servo.speed_at)
+
+
+def why_not_rated(servo: Servo, supply: float | None) -> str:
+    """Return why torque and speed of a servo are unknown at a supply voltage; an empty string where they are known.
+
+    Parameters
+    ----------
+    servo : Servo
+        The servo.
+    supply : float or None
+        Supply voltage [V]; None for that of its ratings.
+    """
+    if servo.supply is None or supply is None or supply <= MOST_OVERVOLTAGE * servo.supply[1]:
+        return ""
+    return (
+        f"{servo.name} is rated for {servo.supply[0]:g} to {servo.supply[1]:g} V; torque and speed are unknown at the "
+        f"supply of {supply:g} V, more than {MOST_OVERVOLTAGE:g} times that"
+    )
 
 
 def utilisation(

@@ -180,7 +180,7 @@ def size_servos(
     evaluation = _Evaluation(base, friction, safety_factor, rule)
     verdicts = joint_verdicts(decisive, safety_factor=safety_factor)
     candidates, excluded = evaluation.candidates()
-    known = all(verdict.servo is not None for verdict in verdicts)
+    known = not np.isnan(base.stall_torque).any()
     return ServoSizing(
         verdicts=verdicts,
         candidates=candidates,

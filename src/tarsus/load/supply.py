@@ -126,5 +126,6 @@ def _total_current(loads: JointLoads) -> Float[np.ndarray, "n"]:
     stall = np.array([[(s.stall_current, s.stall_torque) for s in leg if s is not None] for leg in robot.servos])
     # Torque and current scale alike with the voltage, so their ratio is constant.
     per_torque = stall[..., 0] / stall[..., 1]
-    total = np.minimum(np.abs(loads.torques), loads.stall_torque) * per_torque
+    # Where the supply is too high for a rating, no stall current limits it.
+    total = np.fmin(np.abs(loads.torques), loads.stall_torque) * per_torque
     return np.asarray(total.sum((1, 2)))

@@ -10,6 +10,7 @@ import numpy as np
 
 from tarsus.errors import InputError, UnknownNameError
 from tarsus.load.loads import NO_LOAD, JointLoads
+from tarsus.load.servo_limits import why_not_rated
 from tarsus.representation import represented
 from tarsus.robot.robot import JOINTS
 from tarsus.robot.servo import Servo
@@ -119,6 +120,8 @@ class JointVerdict:
         When and why the joint has its peak torque.
     safety_factor : float
         Required stall torque over peak torque.
+    supply : float or None
+        Supply voltage [V]; None for that of the servo's ratings.
     """
 
     leg: str
@@ -132,6 +135,7 @@ class JointVerdict:
     utilisation: float
     cause: str
     safety_factor: float
+    supply: float | None = None
 
     @property
     def factor(self) -> float:
@@ -185,8 +189,9 @@ class JointVerdict:
 
     def text(self) -> str:
         """Describe the verdict: safety factor, shortfalls and unknown ratings."""
-        if self.servo is None:
-            return f"the robot file names no servo; {self.safety_factor * self.peak:.2f} N m required"
+        unrated = "the robot file names no servo" if self.servo is None else why_not_rated(self.servo, self.supply)
+        if unrated:
+            return f"{unrated}; {self.safety_factor * self.peak:.2f} N m required"
         return f"{self._strength()}{self._speed()}{self._heat()}"
 
     def _strength(self) -> str:
@@ -266,6 +271,7 @@ def joint_verdicts(loads: JointLoads, *, safety_factor: float = SAFETY_FACTOR) -
             utilisation=float(loads.utilisation[:, leg, joint].max()),
             cause=loads.cause(leg, joint),
             safety_factor=safety_factor,
+            supply=loads.supply,
         )
         for leg, code in enumerate(loads.robot.leg_codes)
         for joint, name in enumerate(JOINTS)

@@ -72,7 +72,8 @@ def _draw_servo(axes: Axes, loads: JointLoads, joint: int) -> None:
     stalls = loads.stall_torque[:, joint]
     left = min(axes.get_xlim()[0], 0.0)
     if np.isnan(stalls).all():
-        note = "no servo in the robot file"
+        known = any(row[joint] is not None for row in loads.robot.servos)
+        note = "no ratings at this supply" if known else "no servo in the robot file"
     else:
         weakest = int(np.nanargmin(stalls))
         stall, no_load = float(stalls[weakest]), float(np.degrees(loads.no_load_speed[weakest, joint]))

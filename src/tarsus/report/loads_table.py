@@ -248,7 +248,8 @@ def loads_verdict(summary: dict[str, Any]) -> RenderableType:
     )
     name = f"{worst['leg']} {worst['joint']}"
     if summary["class"] == "unknown":
-        return Text(f"unknown: the robot file names no servo for {name}", style=_style("unknown"))
+        why = f"{name}: {worst['text']}" if worst["servo"] else f"the robot file names no servo for {name}"
+        return Text(f"unknown: {why}", style=_style("unknown"))
     if not summary["balanced"]:
         return Text(f"not carried: the robot tips; servos: {summary['class']} ({name}){estimates}", style="bold red")
     factor = "" if worst["factor"] is None else f", safety factor {worst['factor']:.2f}"
@@ -331,7 +332,7 @@ def servo_lines(summary: dict[str, Any]) -> list[str]:
 def _payload(summary: dict[str, Any]) -> str:
     largest, maximum = summary["largest_payload_kg"], summary["maximum_payload_kg"]
     if largest is None:
-        return "unknown, as the robot file does not name all servos"
+        return "unknown, as the torque of some servos is unknown"
     rule = f"factor {summary['safety_factor']:g}" if summary["rule"] == "factor" else "the continuous load limit"
     limit = f"the limit, factor {BURNOUT_FACTOR:g}, below which servos stall or burn"
     at_limit = f"none at {limit}" if maximum < _NO_PAYLOAD else f"{maximum:.2f} kg at {limit}"

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Self
 import numpy as np
 
 from tarsus.errors import InputError, MissingDataError
-from tarsus.load.servo_limits import at_supply
+from tarsus.load.servo_limits import at_supply, why_not_rated
 from tarsus.representation import represented
 from tarsus.robot.robot import JOINTS, Robot
 from tarsus.robot.servo_dynamics import NO_LOAD_SPEED, ROTOR_INERTIA, servo_dynamics
@@ -68,7 +68,7 @@ class JointSprings:
         Raises
         ------
         MissingDataError
-            If a servo is unknown.
+            If a servo is unknown, or the supply is too high for it.
         """
         values = np.empty((robot.legs, 3, 6))
         lines: list[str] = []
@@ -79,6 +79,8 @@ class JointSprings:
                         f"robot {robot.name!r}, leg {robot.leg_names[leg]}: the servo of the {JOINTS[joint]} is "
                         "unknown, so its stiffness is, too; add it to its file ([leg] servo), or give the stiffness"
                     )
+                if why := why_not_rated(servo, supply):
+                    raise MissingDataError(f"{why}, and so is its stiffness")
                 stall, speed = at_supply(servo, supply)
                 speed = NO_LOAD_SPEED if np.isnan(speed) else speed
                 found, _ = servo_dynamics(servo, stall, speed)

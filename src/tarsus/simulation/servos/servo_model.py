@@ -10,7 +10,7 @@ import numpy as np
 
 from tarsus.errors import InputError, MissingDataError
 from tarsus.kinematics.mass import known_weight
-from tarsus.load.servo_limits import at_supply
+from tarsus.load.servo_limits import at_supply, why_not_rated
 from tarsus.representation import represented
 from tarsus.robot.robot import Robot
 from tarsus.robot.servo import Servo
@@ -134,12 +134,14 @@ class ServoModel:
         Raises
         ------
         MissingDataError
-            If there is no servo.
+            If there is no servo, or the supply is too high for it.
         """
         if servo is None:
             raise MissingDataError(
                 "a joint has no servo; give one in the robot's file ([leg] servo), or simulate with ideal servos"
             )
+        if why := why_not_rated(servo, supply):
+            raise MissingDataError(why)
         stall, speed = at_supply(servo, supply)
         unknown = math.isnan(speed)
         speed = NO_LOAD_SPEED if unknown else speed
