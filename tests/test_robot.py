@@ -6,7 +6,7 @@ import jax.numpy as jnp
 import numpy as np
 import pytest
 
-from tarsus.errors import InputError, MissingDataError
+from tarsus.errors import InputError, MissingDataError, UnknownNameError
 from tarsus.robot.file import load_robot, robot_from_dict, robot_to_dict, save_robot
 from tarsus.robot.geometry import LegGeometry
 from tarsus.robot.robot import JOINTS, GaitDefaults, Robot, Source, stack_robots
@@ -67,6 +67,7 @@ def test_arrays_of_other_libraries_are_kept():
     ("changes", "message"),
     [
         ({"femur": np.full(5, 0.08)}, r"femur has shape \(5,\); expected \(\.\.\., 6\)"),
+        ({"femur": np.zeros(5)}, r"femur has shape \(5,\); expected \(\.\.\., 6\)"),
         ({"limits": np.zeros((6, 3))}, r"limits has shape \(6, 3\); expected \(\.\.\., 6, 3, 2\)"),
         ({"body_com": [0, 0]}, r"body_com has shape \(2,\); expected \(\.\.\., 3\)"),
         ({"femur": "long"}, "femur: expected an array of numbers"),
@@ -92,6 +93,13 @@ def test_arrays_of_other_libraries_are_kept():
 def test_wrong_shapes_and_ranges_are_refused(changes, message):
     with pytest.raises(InputError, match=message):
         six(**changes)
+
+
+def test_a_field_that_a_robot_lacks_is_named_with_the_nearest():
+    with pytest.raises(
+        UnknownNameError, match=r"^no field of a robot is called 'femr'\. Did you mean 'femur'\? There are"
+    ):
+        six().replace(femr=np.full(6, 0.1))
 
 
 def test_an_empty_batch_of_designs():

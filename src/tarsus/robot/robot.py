@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, Self
 import numpy as np
 
 from tarsus.arrays import Array, broadcast_shapes, namespace
-from tarsus.errors import InputError, MissingDataError
+from tarsus.errors import InputError, MissingDataError, UnknownNameError
 from tarsus.representation import Rows, represented
 from tarsus.robot.about import GaitDefaults, Source
 from tarsus.robot.geometry import LegGeometry
@@ -233,7 +233,13 @@ class Robot:
         ------
         InputError
             If a new value has the wrong shape or is out of range.
+        UnknownNameError
+            If a robot has no field of that name.
         """
+        known = [spec.name for spec in dataclasses.fields(self)]
+        for name in changes:
+            if name not in known:
+                raise UnknownNameError.of("field of a robot", name, known)
         return dataclasses.replace(self, **changes)
 
     def item(self, index: tuple[int, ...], *, of: tuple[int, ...] | None = None) -> Self:

@@ -65,11 +65,12 @@ def locked(name: str, value: Float[Array, "..."], *, legs: int, robot: str) -> F
         except (TypeError, ValueError) as error:
             raise InputError(f"{robot}: {name}: expected an array of numbers: {error}") from None
         value.setflags(write=False)
-        _check_range(name, value, robot=robot)
     tail = tuple(legs if n == "legs" else n for n in TAILS[name])
     if tail and tuple(value.shape[-len(tail) :]) != tail:
         expected = ", ".join(["...", *map(str, tail)])
         raise InputError(f"{robot}: {name} has shape {tuple(value.shape)}; expected ({expected})")
+    if isinstance(value, np.ndarray):
+        _check_range(name, value, robot=robot)
     return value
 
 
