@@ -560,3 +560,18 @@ def test_a_leg_whose_limits_allow_one_knee_branch_tells_why_that_one_fails(libra
     assert set(np.asarray(found.reach).tolist()) == {int(Reach.FEMUR_LIMIT)}
     if library is np:
         assert "the femur angle would be -95.0 deg, 15.0 deg below its lower limit of -80.0 deg" in found.explain()
+
+
+@pytest.mark.parametrize("name", ["explain", "require", "explain_leg"])
+def test_under_jit_a_solution_is_not_explained(name):
+    arguments = [(0,)] if name == "explain_leg" else []
+
+    @jax.jit
+    def explained(feet):
+        getattr(inverse_kinematics(load_robot("strider"), feet), name)(*arguments)
+        return feet
+
+    with pytest.raises(
+        InputError, match=f"^{name} can't be traced: it depends on which legs fail; call it outside jit"
+    ):
+        explained(jnp.zeros((6, 3)))

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Literal, Self
 import numpy as np
 
 from tarsus.arrays import Array, is_traced, namespace
-from tarsus.errors import UnreachableError
+from tarsus.errors import InputError, UnreachableError
 from tarsus.kinematics.explain import BODY_FRAME, GROUND_FRAME, explain_legs
 from tarsus.kinematics.pose import Pose
 from tarsus.kinematics.reach import Reach
@@ -77,7 +77,10 @@ class IKSolution:
         ------
         UnreachableError
             If a leg does not reach its foot; the message is that of `explain`.
+        InputError
+            If the solution is traced by JAX.
         """
+        self._require_values("require")
         if not bool(np.all(np.asarray(self.reach) == 0)):
             raise UnreachableError(self.explain())
         return self
@@ -92,7 +95,13 @@ class IKSolution:
         frame : str, optional
             Name of the frame in which the feet were given. Default: the ground frame G where `body` is given, else the
             body frame B.
+
+        Raises
+        ------
+        InputError
+            If the solution is traced by JAX.
         """
+        self._require_values("explain")
         reach = np.asarray(self.reach)
         failing = np.argwhere(reach != 0)
         if not len(failing):
@@ -116,8 +125,18 @@ class IKSolution:
             Index of the leg in `reach`.
         frame : str, optional
             As for `explain`.
+
+        Raises
+        ------
+        InputError
+            If the solution is traced by JAX.
         """
+        self._require_values("explain_leg")
         return self._sentences(index[:-1], frame, legs=[index[-1]])[0][0]
+
+    def _require_values(self, name: str) -> None:
+        if is_traced(self.reach):
+            raise InputError(f"{name} can't be traced: it depends on which legs fail; call it outside jit")
 
     def _sentences(
         self, batch: tuple[int, ...], frame: str | None, *, legs: Sequence[int] | None = None
