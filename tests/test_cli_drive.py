@@ -85,7 +85,7 @@ def test_a_rejected_command_is_reported_with_exit_code_1():
     [
         ("at 0 s: walk 5 m/s", "twist"),
         ("at 0 s: body_height 400 mm", "body_height"),
-        ("at 0 s: gait ripple; at 3 s: foot_target RF x 250 mm y -200 mm z 60 mm", "foot_target"),
+        ("at 0 s: foot_target RF x 250 mm y -200 mm z 60 mm; foot_target RM x 0 mm y -300 mm z 60 mm", "foot_target"),
     ],
 )
 def test_a_command_that_is_not_met_in_full_is_said_and_is_exit_code_1(timeline, kind):
