@@ -1,5 +1,8 @@
 """Help of every command, with examples that run."""
 
+import errno
+import io
+import os
 import shlex
 import subprocess
 import sys
@@ -120,3 +123,17 @@ def test_closed_pipe_is_no_error():
         process.stdout.close()
         complaint = process.stderr.read()
     assert complaint == b""
+
+
+class FullDisk(io.StringIO):
+    def write(self, text):
+        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+
+
+@pytest.mark.parametrize("arguments", ["robots schema", "robots list", "walk strider --json", "--help"])
+def test_a_full_disk_behind_the_standard_output_is_named(arguments, monkeypatch, capsys):
+    monkeypatch.setattr(sys, "stdout", FullDisk())
+    with pytest.raises(SystemExit) as left:
+        main(arguments.split())
+    assert left.value.code == 2
+    assert capsys.readouterr().err == "Error: the standard output can't be written: No space left on device\n"

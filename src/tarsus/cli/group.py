@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import sys
+import traceback
 from collections.abc import Sequence
 from typing import Any, NoReturn
 
@@ -15,6 +16,7 @@ from tarsus.errors import InputError, StrokeError, TarsusError, UnknownNameError
 __all__ = ["TarsusGroup"]
 
 _EXTRAS = {"rich": "cli", "matplotlib": "plots", "PIL": "plots", "fastapi": "studio", "uvicorn": "studio"}
+_PRINTING = {"click.utils", "rich.console"}
 _IMPOSSIBLE, _USAGE, _BUG, _INTERRUPTED = 1, 2, 70, 130
 
 
@@ -41,7 +43,7 @@ class TarsusGroup(click.Group):
             if os.environ.get("TARSUS_DEBUG"):
                 raise
             message, code = _message_and_code(error)
-            fail(message, code=code, as_json=as_json, details=_details(error))
+            fail(message, code=code, as_json=as_json and not _while_printing(error), details=_details(error))
         sys.exit(code or 0)
 
 
@@ -55,8 +57,16 @@ def _message_and_code(error: Exception) -> tuple[str, int]:
         return f"this command needs {error.name}: pip install 'tarsus[{_EXTRAS[error.name]}]'", _IMPOSSIBLE
     if isinstance(error, MemoryError):
         return "out of memory: choose a shorter walk or a lower --rate", _USAGE
+    if _while_printing(error) and isinstance(error, OSError):
+        return f"the standard output can't be written: {error.strerror}", _USAGE
     what = f"{type(error).__name__}: {error}"
     return f"bug in Tarsus, please report it: {what} (set TARSUS_DEBUG=1 for a traceback)", _BUG
+
+
+def _while_printing(error: Exception) -> bool:
+    """Return whether the error occurred in a function of click or rich that prints, as where the disk is full."""
+    modules = {frame.f_globals.get("__name__") for frame, _ in traceback.walk_tb(error.__traceback__)}
+    return isinstance(error, OSError) and bool(modules & _PRINTING)
 
 
 def _details(error: Exception) -> dict[str, Any]:
