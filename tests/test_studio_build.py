@@ -5,6 +5,7 @@ from __future__ import annotations
 import importlib.util
 import subprocess
 import sys
+import tomllib
 import zipfile
 from pathlib import Path
 
@@ -112,3 +113,10 @@ def test_the_pages_are_in_the_wheel(hook, tmp_path):
         assert f"tarsus/studio/web_dist/{name}" in names
     assert any(name.startswith("tarsus/studio/web_dist/assets/") and name.endswith(".js") for name in names)
     assert "tarsus/studio/sources/errata.json" in names
+
+
+def test_every_folder_of_sources_is_in_the_source_archive():
+    tools = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["tool"]
+    folders = {pattern.partition("/")[0] for pattern in tools["ruff"]["lint"]["per-file-ignores"]}
+    assert folders
+    assert folders <= set(tools["hatch"]["build"]["targets"]["sdist"]["include"])
