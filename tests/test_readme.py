@@ -3,6 +3,7 @@
 import contextlib
 import io
 import re
+import tomllib
 from pathlib import Path
 
 ROOT = Path(__file__).parents[1]
@@ -64,3 +65,17 @@ def test_every_command_the_readme_shows_parses():
     assert commands
     for command in commands:
         assert CliRunner().invoke(main, [command, "--help"]).exit_code == 0
+
+
+def test_the_readme_writes_the_urdf_file_before_it_imports_it():
+    shell = "\n".join(blocks("sh"))
+    imported = re.search(r"^tarsus robots import (\S+)", shell, flags=re.MULTILINE)
+    assert f" --out {imported[1]} " in shell[: imported.start()]
+
+
+def test_the_documents_install_extras_that_exist_from_the_clone():
+    extras = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]["optional-dependencies"]
+    for document in [ROOT / "README.md", ROOT / "CONTRIBUTING.md", *(ROOT / "docs").glob("*.md")]:
+        for target in re.findall(r"pip install '([^']*)'", document.read_text(encoding="utf-8")):
+            assert re.fullmatch(r"\.\[[a-z,]+\]", target), f"{document.name}: {target} is not on an index"
+            assert set(target[2:-1].split(",")) <= set(extras)
