@@ -12,11 +12,12 @@ import click
 import pytest
 
 from sample_commands import run
-from tarsus import __version__
+from tarsus import GAITS, __version__
 from tarsus.cli import main
 from tarsus.export import to_urdf
 from tarsus.report.animation import animate
 from tarsus.robot.file import load_robot
+from tarsus.simulation.terrain.kinds import TERRAINS
 
 ANGLES = "[" + ", ".join(["0, 40, -100"] * 6) + "]"
 
@@ -80,6 +81,11 @@ def test_examples_run(example, tmp_path, monkeypatch):
     for option in ("--out", "--picture", "--html"):
         if option in words:
             assert Path(words[words.index(option) + 1]).exists()
+
+
+def test_help_names_every_gait_and_terrain():
+    text = run("simulate", "--help").stdout
+    assert [name for name in (*GAITS, "amble", *TERRAINS) if name not in text] == []
 
 
 def test_version():

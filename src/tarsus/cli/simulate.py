@@ -43,7 +43,7 @@ _VIDEOS = (".mp4", ".gif")
     default="flat",
     show_default=True,
     metavar="KIND[:NAME=VALUE,...]",
-    help="flat, ramp, step, stairs, blocks, smooth, gaps or FILE.png, for example blocks:rise=20,seed=1 (mm, deg).",
+    help="flat, ramp, step, stairs, blocks, smooth, gaps, box or FILE.png, such as blocks:rise=20,seed=1 (mm, deg).",
 )
 @number_option("--friction", "NUMBER", "Coefficient of friction.  [default: 0.8]")
 @click.option(

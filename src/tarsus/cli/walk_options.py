@@ -35,7 +35,7 @@ _OPTIONS = (
     click.option(
         "--gait",
         metavar="NAME",
-        help="tripod, tetrapod, ripple, wave or, with four legs, creep.  [default: the robot's]",
+        help="tripod, tetrapod (also: amble), ripple, wave or, with four legs, creep.  [default: the robot's]",
     ),
     number_option("--distance", "MM", "Straight walk: distance.  [default: 500]"),
     number_option("--heading", "DEG", "Straight walk: direction from the front; 90 is to the left.  [default: 0]"),
