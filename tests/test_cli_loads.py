@@ -280,8 +280,8 @@ def test_loads_explains_its_columns():
 @pytest.mark.parametrize(
     ("options", "text"),
     [
-        ("--payload -1", "payload"),
-        ("--supply 0", "supply is 0"),
+        ("--payload -1", "'--payload': -1 kg; it must be at least 0"),
+        ("--supply 0", "'--supply': 0 V; it must be greater than 0"),
         ("--payload many", "'many' is not a number"),
         ("--gait rippel", "Did you mean 'ripple'?"),
         ("--distance 0", "has no length"),
@@ -295,8 +295,8 @@ def test_usage_errors(command, options, text):
 
 
 def test_usage_errors_of_single_commands():
-    assert "capacity is 0" in run("loads", "strider", *SHORT, "--capacity", "0").stderr
-    assert "safety_factor is 0" in run("servos", "strider", *SHORT, "--factor", "0").stderr
+    assert "'--capacity': 0 A h; it must be greater than 0" in run("loads", "strider", *SHORT, "--capacity", "0").stderr
+    assert "'--factor': 0; it must be greater than 0" in run("servos", "strider", *SHORT, "--factor", "0").stderr
     assert "'half' is not one of" in run("servos", "strider", "--rule", "half").stderr
     assert "is not writable" in run("loads", "strider", "--out", "/dev/null/x").stderr
 

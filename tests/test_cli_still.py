@@ -123,6 +123,7 @@ def test_no_margin_in_json_if_no_leg_reaches():
     [
         ("--pitch nan", 2, "'nan' is not a number"),
         ("--z 1e300", 2, "is not a number between"),
+        ("--swing-height -1", 2, "'--swing-height': -1 mm; it must be at least 0"),
         ("--knee sideways", 2, "'sideways' is not one of"),
         ("--body-height 900", 1, "does not reach the ground"),
         ("--picture /dev/null/pose.png", 2, "can't be written"),

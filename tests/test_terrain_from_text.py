@@ -52,6 +52,11 @@ def test_a_picture_is_a_height_field(tmp_path):
         ("blocks:rise=20,rise=30", InputError, "terrain 'blocks:rise=20,rise=30': rise is given twice"),
         ("blocks:rise", InputError, "'rise' is not of the form NAME=NUMBER, such as rise=20"),
         ("blocks:seed=1.5", InputError, "seed is 1.5; it must be a whole number"),
+        (
+            "blocks:rise=-5,seed=1",
+            InputError,
+            "terrain 'blocks' with rise -5 mm, seed 1: rise is -0.005 m; it must be a finite number, not negative",
+        ),
         ("missing.png:steps=3", InputError, "terrain 'missing.png' has no parameter 'steps'"),
     ],
 )

@@ -37,7 +37,7 @@ _DEFAULT_ROBOT = "strider"
 )
 @click.option("--no-animation", is_flag=True, help="Do not write the animation (of the first 20 s at most).")
 @click.option("--no-guard", is_flag=True, help="Run without the guard, which checks the joint angles of every tick.")
-@number_option("--rate", "HZ", "Ticks per second.  [default: the scenario's, else 100]")
+@number_option("--rate", "HZ", "Ticks per second.  [default: the scenario's, else 100]", above=0)
 @json_option
 def drive(
     scenario: str,

@@ -21,9 +21,9 @@ __all__ = ["handbook"]
 )
 @robot_argument
 @click.option("--gait", metavar="NAME", help="Gait, which determines the number of feet down.  [default: the robot's]")
-@number_option("--factor", "N", "Safety factor on the torques.", default=3.0, show_default=True)
-@number_option("--acceleration", "M/S2", "Acceleration of the body.", default=1.0, show_default=True)
-@number_option("--gravity", "M/S2", "Gravity; 9.8 in the source.", default=9.8, show_default=True)
+@number_option("--factor", "N", "Safety factor on the torques.", default=3.0, show_default=True, above=0)
+@number_option("--acceleration", "M/S2", "Acceleration of the body.", default=1.0, show_default=True, above=0)
+@number_option("--gravity", "M/S2", "Gravity; 9.8 in the source.", default=9.8, show_default=True, above=0)
 @number_option("--body-height", "MM", "Body height of the walk it is compared with.  [default: the robot's]")
 @click.option("--as-printed", is_flag=True, help="Reproduce the errors of source 004; without the comparison.")
 @json_option

@@ -27,10 +27,10 @@ __all__ = ["loads"]
 )
 @robot_argument
 @walk_options
-@number_option("--payload", "KG", "Payload at the body's origin.", default=0.0, show_default=True)
-@number_option("--supply", "V", "Supply voltage.  [default: that of the servo ratings]")
+@number_option("--payload", "KG", "Payload at the body's origin.", default=0.0, show_default=True, least=0)
+@number_option("--supply", "V", "Supply voltage.  [default: that of the servo ratings]", above=0)
 @click.option("--static", is_flag=True, help="Quasi-static: without inertia.")
-@number_option("--capacity", "AH", "Battery capacity, to estimate the battery life.")
+@number_option("--capacity", "AH", "Battery capacity, to estimate the battery life.", above=0)
 @click.option(
     "--out",
     type=click.Path(path_type=Path),

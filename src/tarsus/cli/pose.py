@@ -38,7 +38,7 @@ __all__ = ["pose"]
 @number_option("--pitch", "DEG", "Pitch: the front down.", default=0.0)
 @number_option("--yaw", "DEG", "Yaw: to the left.", default=0.0)
 @number_option("--body-height", "MM", "Body height before the displacement.  [default: the robot's]")
-@number_option("--swing-height", "MM", "Swing height for which the feet are placed.  [default: the robot's]")
+@number_option("--swing-height", "MM", "Swing height for which the feet are placed.  [default: the robot's]", least=0)
 @click.option(
     "--knee", type=click.Choice(["up", "down"]), default="up", show_default=True, help="Configuration of the knees."
 )

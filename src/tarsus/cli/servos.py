@@ -27,7 +27,7 @@ __all__ = ["servos"]
 )
 @robot_argument
 @walk_options
-@number_option("--factor", "N", "Required stall torque over peak torque.", default=3.0, show_default=True)
+@number_option("--factor", "N", "Required stall torque over peak torque.", default=3.0, show_default=True, above=0)
 @click.option(
     "--rule",
     type=click.Choice(["factor", "continuous"]),
@@ -35,8 +35,8 @@ __all__ = ["servos"]
     show_default=True,
     help="Require that factor, or an RMS torque of at most 1/5 of the stall torque.",
 )
-@number_option("--payload", "KG", "Payload at the body's origin.", default=0.0, show_default=True)
-@number_option("--supply", "V", "Supply voltage.  [default: that of the servo ratings]")
+@number_option("--payload", "KG", "Payload at the body's origin.", default=0.0, show_default=True, least=0)
+@number_option("--supply", "V", "Supply voltage.  [default: that of the servo ratings]", above=0)
 @click.option("--static", is_flag=True, help="Quasi-static: without inertia.")
 @json_option
 def servos(

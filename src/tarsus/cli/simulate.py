@@ -45,7 +45,7 @@ _VIDEOS = (".mp4", ".gif")
     metavar="KIND[:NAME=VALUE,...]",
     help="flat, ramp, step, stairs, blocks, smooth, gaps, box or FILE.png, such as blocks:rise=20,seed=1 (mm, deg).",
 )
-@number_option("--friction", "NUMBER", "Coefficient of friction.  [default: 0.8]")
+@number_option("--friction", "NUMBER", "Coefficient of friction.  [default: 0.8]", above=0)
 @click.option(
     "--servos",
     type=click.Choice(["catalogue", "ideal"]),

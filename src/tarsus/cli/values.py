@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any, TypeVar
 
@@ -16,6 +17,8 @@ __all__ = ["Numbers", "examples", "json_option", "number_option", "robot_argumen
 
 # Larger than any robot dimension, and far below the overflow of squares.
 _MAX_VALUE = 1e9
+# Units in messages, where they are not those of the help in lower case.
+_UNITS = {"HZ": "Hz", "V": "V", "AH": "A h", "N": "", "NUMBER": ""}
 _F = TypeVar("_F", bound=Callable[..., Any])
 
 
@@ -28,15 +31,21 @@ def _finite(text: str) -> float | None:
 
 
 class Number(_ParamType):
-    """A finite number."""
+    """A finite number in a unit, at least as large as one bound and larger than another."""
 
     name = "number"
 
+    def __init__(self, unit: str, *, least: float, above: float) -> None:
+        self.unit, self.least, self.above = _UNITS.get(unit, unit.lower()), least, above
+
     def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> float:
-        """Return the number; NaN and infinities are rejected."""
+        """Return the number; NaN, infinities and numbers out of range are rejected."""
         number = _finite(str(value))
         if number is None:
             self.fail(f"{value!r} is not a number between -1e9 and 1e9", param, ctx)
+        if number < self.least or number <= self.above:
+            bound = f"at least {self.least:g}" if number < self.least else f"greater than {self.above:g}"
+            self.fail(f"{number:g} {self.unit}".rstrip() + f"; it must be {bound}", param, ctx)
         return number
 
 
@@ -60,9 +69,11 @@ class Numbers(_ParamType):
         return tuple(number for number in numbers if number is not None)
 
 
-def number_option(flag: str, unit: str, text: str, **more: Any) -> Callable[[_F], _F]:
-    """Return an option for a finite number, with its unit in the help."""
-    return click.option(flag, type=Number(), metavar=unit, help=text, **more)
+def number_option(
+    flag: str, unit: str, text: str, *, least: float = -_MAX_VALUE, above: float = -math.inf, **more: Any
+) -> Callable[[_F], _F]:
+    """Return an option for a finite number, with its unit in the help; see `Number` for its bounds."""
+    return click.option(flag, type=Number(unit, least=least, above=above), metavar=unit, help=text, **more)
 
 
 def robot_argument(function: _F) -> _F:

@@ -52,16 +52,16 @@ _OPTIONS = (
         metavar="VX,VY,WZ",
         help="Walk with a constant twist, in mm/s,mm/s,deg/s.",
     ),
-    number_option("--duration", "S", "Duration of the twist."),
-    number_option("--stroke", "MM", "Stroke: travel of a foot relative to the body during a stance."),
-    number_option("--speed", "MM/S", "Speed of the fastest foot relative to the body."),
-    number_option("--cycle", "S", "Cycle time."),
+    number_option("--duration", "S", "Duration of the twist.", above=0),
+    number_option("--stroke", "MM", "Stroke: travel of a foot relative to the body during a stance.", above=0),
+    number_option("--speed", "MM/S", "Speed of the fastest foot relative to the body.", above=0),
+    number_option("--cycle", "S", "Cycle time.", above=0),
     number_option("--body-height", "MM", "Body height: height of the body's origin over the ground."),
-    number_option("--swing-height", "MM", "Swing height: lift of the feet in swing."),
+    number_option("--swing-height", "MM", "Swing height: lift of the feet in swing.", least=0),
     click.option(
         "--tilt", type=Numbers("ROLL", "PITCH"), metavar="ROLL,PITCH", help="Roll and pitch of the body, in deg."
     ),
     number_option("--stance-width", "MM", "Outward displacement of the feet from their default rest positions."),
-    number_option("--foot-distance", "MM", "Smallest allowed distance between two feet."),
-    number_option("--rate", "HZ", "Samples per second.", default=100.0, show_default=True),
+    number_option("--foot-distance", "MM", "Smallest allowed distance between two feet.", least=0),
+    number_option("--rate", "HZ", "Samples per second.", default=100.0, show_default=True, above=0),
 )

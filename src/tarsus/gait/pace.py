@@ -65,10 +65,11 @@ def choose_pace(
         return stroke, _servo_cycle_time(setup, path, stroke, assumed) if cycle_time is None else cycle_time
     if cycle_time is None:
         return stroke, stroke / (speed * duty_factor)
-    if not math.isclose(stroke, speed * cycle_time * duty_factor, rel_tol=1e-6):
+    expected = speed * cycle_time * duty_factor
+    if not math.isclose(stroke, expected, rel_tol=1e-6):
         raise InputError(
-            f"stroke {stroke:g} m, speed {speed:g} m/s and cycle time {cycle_time:g} s are inconsistent: with "
-            f"duty factor {duty_factor:.3f} the stroke would be {speed * cycle_time * duty_factor:.4f} m; "
+            f"stroke {stroke * 1000:g} mm, speed {speed * 1000:g} mm/s and cycle time {cycle_time:g} s are inconsistent"
+            f": with duty factor {duty_factor:.3f} the stroke would be {expected * 1000:.1f} mm; "
             "omit one of the three"
         )
     return stroke, cycle_time

@@ -31,13 +31,13 @@ HEADING_FRAME = "the heading frame (on the ground below the body)"
 
 # Upper bound of lengths [m], so that their squares do not overflow.
 _MOST = 1e3
-
-
+# Units of arguments in messages, by name.
+_LENGTHS = (
+    *("stroke", "body_height", "swing_height", "foot_distance"),
+    *("amplitude", "clear", "depth", "extent", "length", "rise", "size", "spacing", "tread", "wavelength", "width"),
+)
 _UNITS = {
-    "stroke": " m",
-    "body_height": " m",
-    "swing_height": " m",
-    "foot_distance": " m",
+    **dict.fromkeys(_LENGTHS, " m"),
     "speed": " m/s",
     "cycle_time": " s",
     "rate": " Hz",
@@ -210,8 +210,8 @@ def _widened(robot: Robot, stance: Float[np.ndarray, "legs 3"], width: float) ->
     distance = np.hypot(*out.T)
     if not -distance.min() < width <= _MOST:
         raise InputError(
-            f"stance_width is {width:g} m; it must be a finite number, at most {_MOST:g} m, and more than "
-            f"{-distance.min():.4f} m, where a foot is at its coxa axis"
+            f"stance_width is {width * 1000:g} mm; it must be a finite number, at most {_MOST:g} m, and more than "
+            f"{-distance.min() * 1000:.1f} mm, where a foot is at its coxa axis"
         )
     wider = stance.copy()
     wider[:, :2] += width * out / np.maximum(distance, 1e-9)[:, None]
@@ -224,5 +224,6 @@ def _tilt(body_tilt: Sequence[float]) -> tuple[float, float]:
     except (TypeError, ValueError):
         raise InputError(f"body_tilt is {body_tilt!r}; it must be two numbers, roll and pitch in rad") from None
     if not (abs(roll) < math.pi / 2 and abs(pitch) < math.pi / 2):
-        raise InputError(f"body_tilt is ({roll}, {pitch}) rad; roll and pitch must be between -pi/2 and pi/2")
+        degrees = f"({math.degrees(roll):g}, {math.degrees(pitch):g}) deg"
+        raise InputError(f"body_tilt is {degrees}; roll and pitch must be between -90 and 90 deg")
     return roll, pitch

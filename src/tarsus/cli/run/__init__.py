@@ -52,8 +52,8 @@ _STUDIO = "127.0.0.1:8600"
     type=click.Choice(["lying", "standing"]),
     help="How the robot is found.  [default: lying if it is real, else standing]",
 )
-@number_option("--duration", "S", "End after this time.  [default: the scenario's]")
-@number_option("--rate", "HZ", "Ticks per second.  [default: 100, or what the bus carries]")
+@number_option("--duration", "S", "End after this time.  [default: the scenario's]", above=0)
+@number_option("--rate", "HZ", "Ticks per second.  [default: 100, or what the bus carries]", above=0)
 @click.option(
     "--out", type=click.Path(path_type=Path), metavar="DIR", help="Record telemetry (CSV, MCAP) and figures here."
 )
@@ -69,9 +69,6 @@ def run(robot: str, out: Path | None, as_json: bool, **options: Any) -> int:
     given = [name for name in ("scenario", "keys", "gamepad", "studio") if options[name]]
     if len(given) > 1:
         raise click.UsageError(f"--{given[0]} and --{given[1]} exclude each other")
-    for name, unit in (("duration", "s"), ("rate", "Hz")):
-        if options[name] is not None and options[name] <= 0:
-            raise click.UsageError(f"--{name} is {options[name]:g} {unit}; it must be greater than 0")
     if out is not None:
         make_folder(out)
     summary = perform(robot, options, out=out, quiet=as_json)

@@ -116,7 +116,11 @@ def terrain_of(kind: str, values: Mapping[str, float]) -> Terrain:
             given[name] = int(value)
         else:
             raise InputError(f"terrain {kind!r}: {name} is {value:g}; it must be a whole number")
-    found: Terrain = TERRAINS[kind](**given)
+    try:
+        found: Terrain = TERRAINS[kind](**given)
+    except InputError as error:
+        as_given = ", ".join(f"{name} {value:g} {known[name].unit}".rstrip() for name, value in values.items())
+        raise InputError(f"terrain {kind!r} with {as_given}: {error}") from None
     return found
 
 
