@@ -55,7 +55,16 @@ def test_a_dissimilar_name_gets_no_suggestion():
 
 
 @pytest.mark.parametrize(
-    ("name", "nearest"), [("WAVE", "wave"), ("riple", "ripple"), ("tetra pod", "tetrapod"), ("qqq", None), ("", None)]
+    ("name", "nearest"),
+    [
+        ("WAVE", "wave"),
+        ("riple", "ripple"),
+        ("tetra pod", "tetrapod"),
+        ("qqq", None),
+        ("rapid", None),
+        ("wave-like", "wave"),
+        ("", None),
+    ],
 )
 def test_nearest_name(name, nearest):
     assert nearest_name(name, GAITS) == nearest

@@ -459,14 +459,15 @@ def test_byte_order_mark_and_windows_line_ends_are_accepted(tmp_path):
 def test_an_unknown_name_suggests_the_nearest():
     with pytest.raises(RobotFileError, match=r"no preset robot of that name\. Did you mean 'strider'\?"):
         load_robot("stridr")
-    with pytest.raises(RobotFileError, match=r"of that name\. Presets: ch3r, freenove"):
-        load_robot("/nowhere/to/be/found.toml")
+    for path in ("/nowhere/to/be/found.toml", "my-strider.toml", "robots/stridr", "missing"):
+        with pytest.raises(RobotFileError, match=r"of that name\. Presets: ch3r, freenove"):
+            load_robot(path)
 
 
 @pytest.mark.parametrize(
     ("name", "line"),
     [
-        ("", "is a folder"),
+        (".", "is a folder"),
         ("file/my.toml", "can't be read: Not a directory"),
         ("a\0b", "can't be read: is not a valid path"),
     ],

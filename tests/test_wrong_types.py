@@ -130,7 +130,7 @@ def test_a_text_is_no_option_of_a_walk(name, kind):
         tarsus.WalkController(STRIDER, **{name: "x"})
 
 
-@pytest.mark.parametrize("name", [None, 3, b"strider"])
+@pytest.mark.parametrize("name", [None, 3, b"strider", ""])
 def test_what_is_no_name_is_no_robot(name):
     with pytest.raises(InputError, match=r"is no robot's name or path; the presets are .*strider"):
         load_robot(name)

@@ -210,7 +210,7 @@ def _listed(where: str, problems: Sequence[str]) -> str:
 
 
 def nearest_name(name: str, known: Iterable[str]) -> str | None:
-    """Return the known name that is most similar to `name`, or None if none is similar.
+    """Return the known name that is most similar to `name`, else one that it begins with, or None.
 
     Parameters
     ----------
@@ -220,5 +220,7 @@ def nearest_name(name: str, known: Iterable[str]) -> str | None:
         The names that exist.
     """
     by_lower = {candidate.lower(): candidate for candidate in known}
-    found = difflib.get_close_matches(name.lower(), by_lower, n=1, cutoff=0.5)
+    lower = name.lower()
+    found = difflib.get_close_matches(lower, by_lower, n=1, cutoff=0.65)
+    found = found or [candidate for candidate in by_lower if lower.startswith(candidate)]
     return by_lower[found[0]] if found else None

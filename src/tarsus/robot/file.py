@@ -78,7 +78,7 @@ def file_text(name_or_path: str | os.PathLike[str]) -> str:
     RobotFileError
         If there is no such robot, or its file can't be read.
     """
-    if not isinstance(name_or_path, str | os.PathLike):
+    if name_or_path == "" or not isinstance(name_or_path, str | os.PathLike):
         raise InputError(f"{name_or_path!r} is no robot's name or path; the presets are {', '.join(list_robots())}")
     return _read(PRESETS / f"{name_or_path}.toml" if name_or_path in list_robots() else Path(name_or_path))
 
@@ -225,7 +225,8 @@ def _read(path: Path) -> str:
 
 def _no_such_robot(name: str) -> str:
     known = list_robots()
-    nearest = nearest_name(name.removesuffix(".toml"), known)
+    # The path of a file is not a preset's name typed wrong.
+    nearest = None if Path(name).suffix or Path(name).name != name else nearest_name(name, known)
     hint = f" Did you mean {nearest!r}?" if nearest else ""
     return f"no such file, and no preset robot of that name.{hint} Presets: {', '.join(known)}"
 
