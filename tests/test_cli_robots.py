@@ -1,6 +1,7 @@
 """`tarsus robots`, and errors of all commands from robot files and missing packages."""
 
 import json
+import shlex
 import sys
 from pathlib import Path
 
@@ -266,12 +267,55 @@ def test_misspelt_name_gives_a_suggestion():
 # Missing packages, bugs, interruptions
 
 
-def test_missing_matplotlib(monkeypatch, tmp_path):
-    monkeypatch.setitem(sys.modules, "matplotlib.figure", None)
-    result = run("walk", "strider", "--distance", "100", "--out", tmp_path)
+@pytest.mark.parametrize(
+    ("arguments", "package", "extra"),
+    [
+        ("walk strider --out w", "matplotlib", "plots"),
+        ("loads strider --out w", "matplotlib", "plots"),
+        ("drive --dry 'at 0 s: stop' --out w", "matplotlib", "plots"),
+        ("run strider --duration 1 --out w", "matplotlib", "plots"),
+        ("pose strider --picture p.png", "matplotlib", "plots"),
+        ("rest strider --all 0,0,0 --picture p.png", "matplotlib", "plots"),
+        ("simulate strider --video w.gif", "matplotlib", "plots"),
+        ("simulate strider --out w --zarr", "zarr", "data"),
+    ],
+)
+def test_a_package_that_writes_files_is_missed_before_anything_is_computed(
+    arguments, package, extra, monkeypatch, tmp_path
+):
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setitem(sys.modules, package, None)
+    result = run(*shlex.split(arguments))
     assert result.exit_code == 1
-    assert "pip install 'tarsus[plots]'" in result.stderr
-    assert "possible" in result.stdout
+    assert result.stdout == ""
+    assert f"this command needs {package}: pip install 'tarsus[{extra}]'" in result.stderr
+    assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize(
+    ("arguments", "text"),
+    [
+        ("walk strider --html .", "--html . can't be written: it is a folder"),
+        ("walk strider --html nowhere/w.html", "--html nowhere/w.html can't be written: No such file or directory"),
+        ("walk strider --pulses nosuch.toml", "nosuch.toml: 1 problem\n  can't be read: No such file or directory"),
+        ("pose strider --picture .", "--picture . can't be written: it is a folder"),
+        ("rest strider --all 0,0,0 --picture .", "--picture . can't be written: it is a folder"),
+    ],
+)
+def test_outputs_are_checked_before_anything_is_computed(arguments, text, monkeypatch, tmp_path):
+    monkeypatch.chdir(tmp_path)
+    result = run(*arguments.split())
+    assert result.exit_code in (1, 2)
+    assert result.stdout == ""
+    assert text in result.stderr
+
+
+def test_pages_that_are_not_built_are_missed_before_a_walk_is_planned(monkeypatch, tmp_path):
+    monkeypatch.setattr("tarsus.studio.player.WEB", tmp_path)
+    result = run("walk", "strider", "--html", tmp_path / "w.html")
+    assert result.exit_code == 1
+    assert result.stdout == ""
+    assert "the studio's pages are not built" in result.stderr
 
 
 def _command_that_fails(monkeypatch, error):

@@ -138,7 +138,8 @@ def test_commands_beyond_the_limits_are_refused(tmp_path, monkeypatch):
     result = run("walk", "mithi", "--pulses", "c.toml")
     assert "c.toml is the calibration of strider, which is not the robot 'mithi'" in result.stderr
     new_calibration(STRIDER, "strider").save("n.toml")
-    assert "not calibrated yet; tarsus bring-up" in run("pose", "strider", "--pulses", "n.toml").stderr
+    for command in (["pose", "strider"], ["walk", "strider", "--distance", "1e9"]):
+        assert "not calibrated yet; tarsus bring-up" in run(*command, "--pulses", "n.toml").stderr
     assert Calibration.load("c.toml").joints == made.joints
 
 

@@ -62,7 +62,7 @@ def drive(
     if not dry:
         raise click.UsageError("give --dry, which runs the scenario on an ideal plant; tarsus run drives servos")
     if out is not None:
-        make_folder(out)
+        make_folder(out, "matplotlib")
     timeline = timeline_of(scenario, rate)
     recording = run_scenario(timeline, robot=robot or timeline.robot or _DEFAULT_ROBOT, guard=not no_guard)
     found = _loads(recording)

@@ -15,7 +15,15 @@ from tarsus.errors import InputError, StrokeError, TarsusError, UnknownNameError
 
 __all__ = ["TarsusGroup"]
 
-_EXTRAS = {"rich": "cli", "matplotlib": "plots", "PIL": "plots", "fastapi": "studio", "uvicorn": "studio"}
+_EXTRAS = {
+    "rich": "cli",
+    "matplotlib": "plots",
+    "PIL": "plots",
+    "xarray": "data",
+    "zarr": "data",
+    "fastapi": "studio",
+    "uvicorn": "studio",
+}
 _PRINTING = {"click.utils", "rich.console"}
 _IMPOSSIBLE, _USAGE, _BUG, _INTERRUPTED = 1, 2, 70, 130
 

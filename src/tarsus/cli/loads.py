@@ -65,7 +65,7 @@ def loads(
     from tarsus.report.loads_table import LEGEND, loads_lines, loads_table, loads_verdict, motion_line
 
     if out is not None:
-        make_folder(out)
+        make_folder(out, "matplotlib")
     motion = plan(robot, options)
     joint_load_results = joint_loads(motion.robot, motion, payload=payload, supply=supply, inertial=not static)
     currents = supply_load(joint_load_results, capacity=capacity)

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any, Literal
 
 import click
 
+from tarsus.cli.folder import require_folder
 from tarsus.cli.output import print_json, show
 from tarsus.cli.pulses import pose_pulses, pulse_table, pulses_option
 from tarsus.cli.values import examples, json_option, number_option, robot_argument
@@ -63,6 +64,8 @@ def pose(
     """
     from tarsus.report.tables import angle_table, number, verdict
 
+    if picture is not None:
+        require_folder(picture, "--picture", "matplotlib")
     standing = _standing(robot, knee, displacement)
     summary = standing.summary()
     if picture is not None:

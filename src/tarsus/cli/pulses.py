@@ -39,7 +39,7 @@ def pulses_option(text: str) -> Callable[[_F], _F]:
     return click.option("--pulses", type=click.Path(path_type=Path), metavar="CALIBRATION", help=text)
 
 
-def walk_pulses(motion: Motion, options: dict[str, Any], calibration: Path, folder: Path) -> list[Path]:
+def walk_pulses(motion: Motion, options: dict[str, Any], calibration: Calibration, folder: Path) -> list[Path]:
     """Write the commands of a walk as a table, and one cycle of it as an Arduino header; return the paths.
 
     Parameters
@@ -48,26 +48,25 @@ def walk_pulses(motion: Motion, options: dict[str, Any], calibration: Path, fold
         The walk.
     options : dict
         Options of `tarsus walk` from which it was planned.
-    calibration : Path
-        The calibration file.
+    calibration : Calibration
+        The calibration of its robot.
     folder : Path
         Existing folder.
 
     Raises
     ------
     TarsusError
-        If the calibration is wrong or incomplete, the walk exceeds its limits, or a file can't be written.
+        If the calibration is incomplete, the walk exceeds its limits, or a file can't be written.
     """
     from tarsus.hardware.pulses.gait_cycle import gait_cycle_header
     from tarsus.hardware.pulses.table import write_pulses
 
-    found = calibration_of(motion.robot, calibration)
-    write_pulses(found, motion.angles, folder / _TABLE, time=motion.time)
+    write_pulses(calibration, motion.angles, folder / _TABLE, time=motion.time)
     cycle = _steady_cycle(motion, options)
     title = f"{motion.robot.name}, {motion.gait.name}: one cycle of {motion.cycle_time:.3f} s"
     header = folder / _HEADER
     try:
-        header.write_text(gait_cycle_header(found, cycle, title=title), encoding="ascii")
+        header.write_text(gait_cycle_header(calibration, cycle, title=title), encoding="ascii")
     except OSError as error:
         raise InputError(f"{header} can't be written: {error.strerror}") from None
     return [folder / _TABLE, header]
@@ -102,7 +101,7 @@ def pose_pulses(solution: IKSolution, calibration: Path, folder: Path) -> tuple[
 
 
 def calibration_of(robot: Robot, path: Path) -> Calibration:
-    """Return the calibration of a robot.
+    """Return the calibration of a robot, which must be complete.
 
     Parameters
     ----------
@@ -114,7 +113,7 @@ def calibration_of(robot: Robot, path: Path) -> Calibration:
     Raises
     ------
     CalibrationError
-        If something in the file is wrong.
+        If something in the file is wrong or missing.
     InputError
         If it is for another robot.
     """
@@ -123,6 +122,7 @@ def calibration_of(robot: Robot, path: Path) -> Calibration:
     found = Calibration.load(path)
     if found.robot != robot:
         raise InputError(f"{path} is the calibration of {found.robot_file}, which is not the robot {robot.name!r}")
+    found.require_complete()
     return found
 
 

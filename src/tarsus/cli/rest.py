@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from tarsus.cli.folder import require_folder
 from tarsus.cli.output import print_json, show
 from tarsus.cli.values import Numbers, examples, json_option, robot_argument
 
@@ -57,6 +58,8 @@ def rest(
     from tarsus.report.tables import verdict
     from tarsus.robot.file import load_robot
 
+    if picture is not None:
+        require_folder(picture, "--picture", "matplotlib")
     loaded = load_robot(robot)
     radians = np.radians(read_leg_values(loaded, ANGLES, angles, same_for_all=same_for_all, file=file))
     result = resting_pose(loaded, radians)

@@ -99,11 +99,11 @@ def simulate(
     if video is not None and video.suffix.lower() not in _VIDEOS:
         raise click.UsageError(f"--video {video}: the name must end in {' or '.join(_VIDEOS)}")
     if video is not None:
-        require_folder(video, "--video")
+        require_folder(video, "--video", "matplotlib")
     if zarr and out is None:
         raise click.UsageError("--zarr needs --out, the folder to write to")
     if out is not None:
-        make_folder(out)
+        make_folder(out, *(("xarray", "zarr") if zarr else ()))
     terrain, friction = options.pop("terrain"), options.pop("friction")
     plant: dict[str, Any] = {name: options.pop(name) for name in ("servos", "sensors", "seed")}
     plant["terrain"] = terrain_from_text(terrain, friction=friction)

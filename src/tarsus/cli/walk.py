@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from tarsus.cli.folder import make_folder
+from tarsus.cli.folder import make_folder, require_folder
 from tarsus.cli.output import print_json, progress_bar, show
-from tarsus.cli.pulses import pulses_option, walk_pulses
+from tarsus.cli.pulses import calibration_of, pulses_option, walk_pulses
 from tarsus.cli.values import examples, json_option, robot_argument
 from tarsus.cli.walk_options import compensate_option, walk_options
 
@@ -64,18 +64,26 @@ def walk(
     from tarsus.cli.planning import plan
     from tarsus.report.tables import verdict, walk_table
     from tarsus.report.walk_summary import walk_summary
+    from tarsus.robot.file import load_robot
 
     if out is not None:
-        make_folder(out)
-    motion = plan(robot, options)
+        make_folder(out, "matplotlib")
+    if html is not None:
+        from tarsus.studio.player import player_template
+
+        require_folder(html, "--html")
+        player_template()
+    loaded = load_robot(robot)
+    calibration = None if pulses is None else calibration_of(loaded, pulses)
+    motion = plan(loaded, options)
     summary = walk_summary(motion)
     if not as_json:
         show(walk_table(summary), f"servos: {summary['servos']['text']}", verdict(summary))
     files = [] if out is None else _write(motion, out, animation=not no_animation, quiet=as_json)
     if html is not None:
         files.append(_write_page(motion, html))
-    if pulses is not None and summary["possible"]:
-        files += walk_pulses(motion, options, pulses, out or Path())
+    if calibration is not None and summary["possible"]:
+        files += walk_pulses(motion, options, calibration, out or Path())
     if as_json:
         print_json({**summary, "files": [str(file) for file in files]})
     else:

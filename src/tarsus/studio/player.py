@@ -13,7 +13,7 @@ from tarsus.studio.messages.state import LoadOptions, RobotChoice
 from tarsus.studio.robots import robot_message
 from tarsus.studio.walks import MOST_SAMPLES, walk_message
 
-__all__ = ["BUILD_HINT", "WEB", "player_data", "player_page"]
+__all__ = ["BUILD_HINT", "WEB", "player_data", "player_page", "player_template"]
 
 WEB = Path(__file__).parent / "web_dist"
 """Folder of the built front end."""
@@ -72,12 +72,23 @@ def player_page(data: PlayerData) -> str:
     TarsusError
         If the front end has not been built.
     """
+    # "<" could end the script element, so it is escaped as JSON allows.
+    held = data.model_dump_json().replace("<", "\\u003c")
+    return player_template().replace(_PLACE, held, 1)
+
+
+def player_template() -> str:
+    """Return the text of the page without its data.
+
+    Raises
+    ------
+    TarsusError
+        If the front end has not been built.
+    """
     try:
         page = (WEB / "player.html").read_text(encoding="utf-8")
     except OSError:
         page = ""
     if _PLACE not in page:
         raise TarsusError(BUILD_HINT)
-    # "<" could end the script element, so it is escaped as JSON allows.
-    held = data.model_dump_json().replace("<", "\\u003c")
-    return page.replace(_PLACE, held, 1)
+    return page

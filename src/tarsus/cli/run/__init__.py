@@ -70,7 +70,7 @@ def run(robot: str, out: Path | None, as_json: bool, **options: Any) -> int:
     if len(given) > 1:
         raise click.UsageError(f"--{given[0]} and --{given[1]} exclude each other")
     if out is not None:
-        make_folder(out)
+        make_folder(out, "matplotlib")
     summary = perform(robot, options, out=out, quiet=as_json)
     if as_json:
         print_json(summary)
