@@ -208,6 +208,19 @@ def test_impossible_walks(options, text):
     assert text in result.stderr
 
 
+def test_a_walk_refused_for_an_implausible_value_points_to_the_check_of_the_file(tmp_path):
+    file = tmp_path / "my.toml"
+    document = robot_to_dict(STRIDER)
+    document["leg"]["femur_mm"] = 0.08
+    save_robot(robot_from_dict(document), file)
+    for command in ("walk", "loads", "simulate"):
+        result = run(command, file)
+        assert result.exit_code == 1
+        assert "does not reach the ground" in result.stderr
+        assert result.stderr.endswith(f"implausible values: see `tarsus robots check {file}`\n")
+    assert "implausible" not in run("walk", "strider", "--stroke", "500").stderr
+
+
 def test_progress_bar_on_a_terminal(monkeypatch, tmp_path):
     args = ("walk", "strider", "--distance", "60", "--rate", "20", "--no-animation", "--out", tmp_path)
     monkeypatch.setenv("FORCE_COLOR", "1")

@@ -7,11 +7,13 @@ from typing import Any
 
 import click
 
+from tarsus.errors import CollisionError, UnreachableError
 from tarsus.gait.gait import Gait
 from tarsus.gait.motion import Motion
 from tarsus.gait.path import BodyPath, curved_path, straight_path, twist_path
 from tarsus.gait.plan import plan_walk
 from tarsus.load.deflection import compensate_deflection
+from tarsus.plausibility.checks import plausibility_warnings
 from tarsus.robot.file import load_robot
 from tarsus.robot.robot import Robot
 
@@ -47,16 +49,21 @@ def plan(name: str | Robot, options: dict[str, Any]) -> Motion:
     gait = Gait.named(options["gait"] or robot.gait.name, legs=robot.legs, turning=path.angle)
     tilt = options["tilt"] or (0.0, 0.0)
     lengths: dict[str, Any] = {key: None if options[key] is None else options[key] / 1000 for key in _LENGTHS}
-    motion = plan_walk(
-        robot,
-        gait,
-        path,
-        cycle_time=options["cycle"],
-        body_tilt=(math.radians(tilt[0]), math.radians(tilt[1])),
-        stance_width=(options["stance_width"] or 0.0) / 1000,
-        rate=options["rate"],
-        **lengths,
-    )
+    try:
+        motion = plan_walk(
+            robot,
+            gait,
+            path,
+            cycle_time=options["cycle"],
+            body_tilt=(math.radians(tilt[0]), math.radians(tilt[1])),
+            stance_width=(options["stance_width"] or 0.0) / 1000,
+            rate=options["rate"],
+            **lengths,
+        )
+    except (UnreachableError, CollisionError) as error:
+        if isinstance(name, str) and plausibility_warnings(robot):
+            error.args = (f"{error}. The robot file has implausible values: see `tarsus robots check {name}`",)
+        raise
     return compensate_deflection(motion) if options.get("compensate") else motion
 
 

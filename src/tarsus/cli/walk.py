@@ -73,9 +73,8 @@ def walk(
 
         require_folder(html, "--html")
         player_template()
-    loaded = load_robot(robot)
-    calibration = None if pulses is None else calibration_of(loaded, pulses)
-    motion = plan(loaded, options)
+    calibration = None if pulses is None else calibration_of(load_robot(robot), pulses)
+    motion = plan(robot, options)
     summary = walk_summary(motion)
     if not as_json:
         show(walk_table(summary), f"servos: {summary['servos']['text']}", verdict(summary))
