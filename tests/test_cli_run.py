@@ -155,7 +155,7 @@ def test_settings_of_a_scenario_hold_on_servos_and_in_physics(tmp_path):
         (("--port", "COM3"), "--port is for real robots; with --bus emulated leave it out"),
         (("--bus", "simulated", "--port", "COM3"), "--port is for real robots; with --bus simulated leave it out"),
         (("--keys",), "the standard input is none"),
-        (("--gamepad", "/dev/none"), "no gamepad at /dev/none"),
+        (("--gamepad", "/dev/none"), "no gamepad at /dev/none: No such file or directory; plug it in"),
         (("--keys", "--gamepad"), "exclude each other"),
         (("--keys", "--scenario", "at 0 s: stop"), "--scenario and --keys exclude each other"),
         (("--bus", "simulated", "--keys"), "physics does not run in real time"),

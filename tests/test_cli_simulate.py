@@ -124,7 +124,7 @@ def test_a_scenario_runs_through_the_controller():
         (f"{SHORT} --terrain smooth:seed=-2", 2, "seed is -2; it must be a whole number, not negative"),
         ("simulate strider --terrain hills", 2, "no terrain is called 'hills'"),
         ("simulate strider --distance 100 --cycle 0.2", 1, "the walk is not possible: "),
-        ("simulate mithi", 1, "the servo of the coxa is unknown"),
+        ("simulate mithi", 1, "unknown; add it to its file ([leg] servo); `tarsus simulate` with --servos ideal"),
         (f"{SHORT} --terrain step:rise=60,start=0", 1, "failed\n  covered 17 mm of 60 mm"),
     ],
 )

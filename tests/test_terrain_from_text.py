@@ -57,6 +57,7 @@ def test_a_picture_is_a_height_field(tmp_path):
             InputError,
             "terrain 'blocks' with rise -5 mm, seed 1: rise is -0.005 m; it must be a finite number, not negative",
         ),
+        ("nosuch.png", InputError, "nosuch.png can't be read as a picture: No such file or directory"),
         ("missing.png:steps=3", InputError, "terrain 'missing.png' has no parameter 'steps'"),
     ],
 )

@@ -132,8 +132,10 @@ def _number(value: object, what: LegValues, *, prefix: str) -> float:
     except (ValueError, OverflowError):
         number = math.nan
     if not abs(number) <= _MOST:
+        # Values of a file are shown as they are written there: null, true, NaN.
+        shown = repr(value[:60]) if isinstance(value, str) else json.dumps(value)[:60]
         raise click.UsageError(
-            f"{prefix}{str(value)[:60]!r} is not {what.kind}; expected a number between -1e6 and 1e6 [{what.unit}]"
+            f"{prefix}{shown} is not {what.kind}; expected a number between -1e6 and 1e6 [{what.unit}]"
         )
     return number
 

@@ -60,7 +60,8 @@ def write_new(path: Path, text: str) -> None:
     except FileExistsError:
         raise click.UsageError(f"{path} already exists; choose another file with --out") from None
     except (OSError, ValueError) as error:
-        raise click.UsageError(f"{path} can't be written: {error}") from None
+        reason = getattr(error, "strerror", None) or error
+        raise click.UsageError(f"{path} can't be written: {reason}") from None
 
 
 def show(*items: RenderableType) -> None:

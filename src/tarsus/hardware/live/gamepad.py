@@ -49,7 +49,8 @@ class Gamepad:
         try:
             self._file = os.open(path, os.O_RDONLY | os.O_NONBLOCK)
         except (OSError, ValueError, AttributeError) as error:
-            raise InputError(f"no gamepad at {path}: {error}; plug it in, or name its device") from None
+            reason = getattr(error, "strerror", None) or error
+            raise InputError(f"no gamepad at {path}: {reason}; plug it in, or name its device") from None
         self._axes = dict.fromkeys((_LEFT_X, _LEFT_Y, _RIGHT_X), 0.0)
         self._rest = b""
 

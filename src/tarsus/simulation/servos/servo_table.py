@@ -117,6 +117,6 @@ def _of_joint(robot: Robot, leg: int, joint: int) -> ServoModel:
     if servo is None:
         raise MissingDataError(
             f"robot {robot.name!r}, leg {robot.leg_names[leg]}: the servo of the {JOINTS[joint]} is unknown; add it to "
-            "its file ([leg] servo), or simulate with ideal servos"
+            "its file ([leg] servo); `tarsus simulate` with --servos ideal needs none"
         )
     return ServoModel.of(servo)

@@ -102,7 +102,8 @@ class HeightField:
                 deep = picture.mode.startswith("I")
                 grey = np.asarray(picture if deep else picture.convert("L"), dtype=np.float64)
         except OSError as error:
-            raise InputError(f"{os.fspath(path)} can't be read as a picture: {error}") from None
+            reason = error.strerror or "it has no known format"
+            raise InputError(f"{os.fspath(path)} can't be read as a picture: {reason}") from None
         return cls(heights=grey[::-1] / (65535 if deep else 255) * rise, size=size, friction=friction)
 
     def height(self, x: Any, y: Any) -> Shaped[np.ndarray, "..."]:
