@@ -4,6 +4,7 @@ import { legColours } from "../scene/palette";
 import type { CameraName, Place } from "../scene/cameras";
 import { footTrails, lengthOf } from "../scene/trails";
 import { shapeOf } from "../scene/kinematics";
+import { ForceLegend } from "../scene/ForceLegend";
 import { SceneCanvas } from "../scene/SceneCanvas";
 import { useOptions } from "../state/options";
 import { look } from "../state/session";
@@ -79,7 +80,10 @@ export function PicturePane({ view }: { view: View }) {
       >
         <SceneExtras view={view} shape={shape} palette={palette} colours={colours} />
       </SceneCanvas>
-      <StatusChips />
+      <div className="corner">
+        <StatusChips />
+        {loaded && <ForceLegend />}
+      </div>
       <CameraBar
         camera={camera}
         onChoose={(name) => {

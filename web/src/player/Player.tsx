@@ -13,6 +13,7 @@ import { footTrails, lengthOf } from "../scene/trails";
 import { shapeOf } from "../scene/kinematics";
 import { legColours } from "../scene/palette";
 import { framing } from "../scene/framing";
+import { ForceLegend } from "../scene/ForceLegend";
 import { SceneCanvas } from "../scene/SceneCanvas";
 import { prefersReducedMotion, stage } from "../scene/stage";
 import { playWalk } from "../scene/walking";
@@ -86,8 +87,10 @@ export function Player({ data }: { data: PlayerData }) {
             if (turned) setCamera("free");
           }}
         />
-
-        <StatusChips />
+        <div className="corner">
+          <StatusChips />
+          {forces && <ForceLegend />}
+        </div>
         <CameraBar
           camera={camera}
           onChoose={(name) => {

@@ -5,7 +5,6 @@ import { useRef, type KeyboardEvent, type ReactNode } from "react";
 import { Arrows } from "./Arrows";
 import { CameraRig, type View } from "./CameraRig";
 import type { CameraName, Place } from "./cameras";
-import { ForceLegend } from "./ForceLegend";
 import { FrameLoop } from "./FrameLoop";
 import { Contacts } from "./Contacts";
 import type { Shape } from "./frame";
@@ -124,7 +123,6 @@ function Scene(props: SceneProps) {
         <LabelPositions layer={notes} />
       </Canvas>
       <Labels layer={notes} shape={shape} colours={colours} forces={forces ?? false} />
-      {forces && torques && <ForceLegend />}
     </div>
   );
 }
