@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import re
 
 import numpy as np
@@ -129,6 +130,16 @@ def test_a_walk_is_planned_with_the_given_options(visitor):
     expect(visitor.at("walk-verdict")).to_contain_text("Every foot reaches its whole path.")
 
 
+def test_only_a_walk_that_can_be_shown_is_offered_to_be_shown(visitor):
+    visitor.open(StudioState(view="walk"))
+    anyway = visitor.page.get_by_role("button", name="Show it anyway")
+    visitor.type("stroke_mm", 500)
+    expect(anyway.first).to_be_visible()
+    visitor.type("distance", 0)
+    expect(visitor.at("failure").first).to_contain_text("no length")
+    expect(anyway).to_have_count(0)
+
+
 def test_a_stroke_too_long_is_refused_beside_its_field(visitor):
     visitor.open(StudioState(view="walk"))
     visitor.type("stroke_mm", 500)
@@ -183,6 +194,23 @@ def test_a_custom_gait_starts_as_the_present_one(visitor):
     )
     expect(visitor.at("walk-verdict")).to_contain_text("Every foot")
     assert visitor.facts("walk-facts")["Minimum stability margin"] == least
+
+
+def test_nothing_over_the_picture_covers_anything_else(visitor):
+    visitor.open(StudioState(view="loads"))
+    expect(visitor.at("chip-margin")).to_be_visible()
+    names = ("chip-margin", "chip-feet", "force-legend", "camera-free", "play-speed", "loop", "clock")
+    boxes = [visitor.at(name).bounding_box() for name in names]
+    for one, other in itertools.combinations(boxes, 2):
+        apart = [
+            one[at] + one[size] <= other[at] or other[at] + other[size] <= one[at]
+            for at, size in (("x", "width"), ("y", "height"))
+        ]
+        assert any(apart), (one, other)
+    player = visitor.at("player").bounding_box()
+    for box in boxes[-3:]:
+        assert player["x"] <= box["x"]
+        assert box["x"] + box["width"] <= player["x"] + player["width"]
 
 
 def test_forces_are_labelled_in_newtons_beside_the_names_of_the_legs(visitor):

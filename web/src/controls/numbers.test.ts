@@ -1,7 +1,17 @@
 import { describe, expect, it } from "vitest";
 
 import { angleText } from "../views/angleText";
-import { apart, decimalsOf, fixed, rangeText, significant, stepped, typedNumber, withUnit } from "./numbers";
+import {
+  apart,
+  decimalsOf,
+  fixed,
+  rangeText,
+  significant,
+  stepped,
+  typedNumber,
+  unbroken,
+  withUnit,
+} from "./numbers";
 
 describe("numbers", () => {
   it("have as many decimals as their step", () => {
@@ -16,7 +26,14 @@ describe("numbers", () => {
   it("are shown as a dash if unknown", () => {
     expect(withUnit(null, 1, "mm")).toBe("–");
     expect(withUnit(Infinity, 1, "mm")).toBe("–");
-    expect(withUnit(12.345, 1, "mm")).toBe("12.3 mm");
+    expect(withUnit(12.345, 1, "mm")).toBe("12.3\u00a0mm");
+  });
+
+  it("stay on a line with their units", () => {
+    expect(withUnit(1.5, 2, "N m")).toBe("1.50\u00a0N\u00a0m");
+    expect(unbroken("factor 1.66, 1.98 N m short of factor 3 at 2 s")).toBe(
+      "factor 1.66, 1.98\u00a0N\u00a0m short of factor 3 at 2\u00a0s",
+    );
   });
 
   it("may be typed with a decimal comma; incomplete numbers are rejected", () => {

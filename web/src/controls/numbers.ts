@@ -16,10 +16,17 @@ export function fixed(value: number, digits: number): string {
   return Number(text) === 0 ? (0).toFixed(digits) : text;
 }
 
-/** A number with a unit, or a dash where it is unknown. */
+const NO_BREAK = "\u00a0";
+
+/** A text in which lines do not break between numbers and their units. */
+export function unbroken(text: string): string {
+  return text.replace(/\d (?:N m|N|mm|s|deg|kg|V|A|%)(?!\w)/g, (found) => found.replaceAll(" ", NO_BREAK));
+}
+
+/** A number with a unit, or a dash where it is unknown; lines do not break within it. */
 export function withUnit(value: number | null | undefined, digits: number, unit: string): string {
   if (value === null || value === undefined || !Number.isFinite(value)) return "–";
-  return unit ? `${fixed(value, digits)} ${unit}` : fixed(value, digits);
+  return (unit ? `${fixed(value, digits)} ${unit}` : fixed(value, digits)).replaceAll(" ", NO_BREAK);
 }
 
 /** Parse a typed number, with decimal point or comma; null where the text is not a complete number. */

@@ -1,5 +1,6 @@
 import { Failure } from "../../controls/Failure";
 import { Message, Remarks } from "../../controls/Message";
+import { unbroken } from "../../controls/numbers";
 import type { LoadsMessage } from "../../protocol";
 import { useStudio } from "../../state/store";
 import { ViewHead } from "../ViewHead";
@@ -39,12 +40,12 @@ function Verdict({ loads }: { loads: LoadsMessage }) {
         <ul>
           {loads.worst.map((joint) => (
             <li key={joint}>
-              {joint}: {textOf(loads, joint)}
+              {joint}: {unbroken(textOf(loads, joint))}
             </li>
           ))}
         </ul>
       </Message>
-      <Remarks kind="warn" items={loads.supply_warning === null ? [] : [loads.supply_warning]} />
+      <Remarks kind="warn" items={loads.supply_warning === null ? [] : [unbroken(loads.supply_warning)]} />
       {!loads.balanced && (
         <Remarks
           kind="warn"

@@ -1,6 +1,6 @@
 import { useEffect, useRef } from "react";
 
-import { fixed, withUnit } from "../../controls/numbers";
+import { withUnit } from "../../controls/numbers";
 import type { JointLoad, LoadsMessage } from "../../protocol";
 import { stage } from "../../scene/stage";
 import { useInputs } from "../useInputs";
@@ -69,7 +69,7 @@ function Bar({ load, onMark }: { load: JointLoad; onMark: (mark: HTMLElement | n
   return (
     <div className="torque">
       <span>
-        {fixed(load.peak_nm, 2)} N m
+        {withUnit(load.peak_nm, 2, "N m")}
         <small>
           <span aria-hidden="true">{SIGNS[load.grade] ?? "⚠"} </span>
           <span className="hidden-text">{load.grade}, </span>

@@ -1,4 +1,5 @@
 import { Select } from "../../controls/Select";
+import { withUnit } from "../../controls/numbers";
 import { Slider } from "../../controls/Slider";
 import { change } from "../../state/session";
 import { useStudio } from "../../state/store";
@@ -72,8 +73,8 @@ export function GaitChoice() {
       )}
       {walk && (
         <p className="hint" data-testid="gait-text">
-          {walk.gait}: each foot is in stance for {Math.round(walk.duty_factor * 100)} % of the cycle of{" "}
-          {walk.cycle_time_s.toFixed(2)} s.
+          {walk.gait}: each foot is in stance for {withUnit(walk.duty_factor * 100, 0, "%")} of the cycle of{" "}
+          {withUnit(walk.cycle_time_s, 2, "s")}.
         </p>
       )}
     </fieldset>
