@@ -510,6 +510,14 @@ def test_the_timeline_of_a_robot_that_never_stands_and_of_one_without_a_guard():
     assert "no guard" in plot_timeline(lying).get_suptitle()
 
 
+def test_no_label_of_the_timeline_ends_within_a_word():
+    found = run_scenario(scenario_from_text("at 0 s: power_off", start="sitting", duration=0.5), robot="strider")
+    (released,) = (event.text for event in found.events if event.kind == "power")
+    assert len(released) > 100
+    words = {text.get_text() for text in plot_timeline(found).axes[0].texts}
+    assert "joints released: coxae, femurs, tibiae" in words
+
+
 def test_the_summary_is_of_the_motion():
     found = run_scenario(
         scenario_from_text("at 0.5 s: walk 50 mm/s; at 3 s: walk turn 10 deg/s; at 5 s: stop"), robot="strider"

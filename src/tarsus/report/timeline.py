@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import textwrap
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -94,7 +95,8 @@ def _rows(recording: Recording) -> list[tuple[Event, int, str]]:
     ends: list[float] = []
     labels = []
     for event in _of(recording, "command", "refused", "power"):
-        text = event.text if len(event.text) <= _MAX_LABEL else event.text[: _MAX_LABEL - 3] + "..."
+        # The first clause says what happened; a list of what falls, which may follow, is longer than the figure.
+        text = textwrap.shorten(event.text.partition(";")[0], _MAX_LABEL, placeholder=" ...")
         width = (len(text) + 2) * _CHARACTER_WIDTH * scale
         start = _label_start(event.time, width, recording.motion.duration)
         row = next((row for row, end in enumerate(ends) if end <= start), len(ends))
