@@ -31,7 +31,7 @@ if TYPE_CHECKING:
 __all__ = ["plan_walk"]
 
 # Most samples of a motion; least travel of the outermost foot along a path [m].
-_MOST_SAMPLES = 2_000_000
+_MOST_SAMPLES = 500_000
 _SHORTEST_PATH = 1e-9
 # Tolerance for rounding of the number of samples in a swing.
 _ROUNDING = 1e-6
