@@ -10,11 +10,11 @@ from tarsus.control.limitation import Cause
 from tarsus.control.tick.components import WalkComponents
 from tarsus.control.transition.executor import TransitionExecutor
 from tarsus.control.transition.stance_transition import StanceTarget, StanceTransition, WalkParameters
-from tarsus.control.transition.supporting_feet import one_at_a_time
 from tarsus.control.walk.foot_targets import excluded_legs
 from tarsus.control.walk.state import GaitState
 from tarsus.control.walk_state import TickState
 from tarsus.gait.stance.stability import support_sets
+from tarsus.gait.stance.supporting_feet import one_at_a_time
 from tarsus.incremental import Incremental
 from tarsus.kinematics.stability import stability_margin
 

@@ -10,13 +10,13 @@ from tarsus.arrays import require_float
 from tarsus.control.limitation import Cause, Limitation, LimitationKind
 from tarsus.control.transition.feasible_fraction import balanced_fraction, first_increment, reachable_fraction
 from tarsus.control.transition.stance_transition import StanceTarget, StanceTransition, WalkParameters, target_stance
-from tarsus.control.transition.supporting_feet import supporting_turns
 from tarsus.control.workspace.cycle_time import CycleTiming, cycle_timing
 from tarsus.control.workspace.foot_workspace import reach_cause
 from tarsus.control.workspace.stance_limits import shifted_limits, velocity_limits
 from tarsus.errors import UnreachableError
 from tarsus.gait.stance.stability import StabilityCheck, support_sets
 from tarsus.gait.stance.stance_geometry import sway_extremes
+from tarsus.gait.stance.supporting_feet import supporting_turns
 from tarsus.gait.stance.velocity_limits import VelocityLimits, with_stroke_limits
 from tarsus.gait.walk_setup import WalkSetup, require_number
 from tarsus.incremental import Incremental, complete
