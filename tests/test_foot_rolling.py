@@ -75,9 +75,9 @@ def test_a_tilted_and_swaying_body_keeps_the_feet_on_the_ground():
 def test_a_leg_out_of_the_gait_has_its_foot_where_it_is_commanded():
     w = WalkController(preset("strider"), Gait.named("wave"))
     point = w.feet[0] + [0.02, 0.03, 0.05]
-    trace = Trace(w).run(Command(foot_targets={0: tuple(point)}), 8)
+    trace = Trace(w).run(Command(foot_targets={0: tuple(point)}), 18)
     np.testing.assert_allclose(w.feet[0], point, atol=1e-6)
-    trace.run(Command(foot_targets={0: None}), 4).assert_sound()
+    trace.run(Command(foot_targets={0: None}), 14).assert_sound()
 
 
 def test_a_lower_body_has_its_feet_at_rest_again():

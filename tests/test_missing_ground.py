@@ -219,8 +219,8 @@ def test_a_foot_that_hangs_at_the_end_of_its_reach_at_another_place_steps_on():
     missing = stepped(MissingGround(NAMES), [(0, 0.06, False, False)])
     first = missing.places[0]
     # On its way down it looks further.
-    assert stepped(missing, [(0, 0.06, True, False)], [first, *REST[1:]]).places[0] == first
-    second = stepped(missing, [(0, 0.06, False, False)], [first, *REST[1:]]).places[0]
+    assert stepped(missing, [(0, 0.03, True, False)], [first, *REST[1:]]).places[0] == first
+    second = stepped(missing, [(0, 0.03, False, False)], [first, *REST[1:]]).places[0]
     assert second.real < first.real
     # Seen ground below it that the leg does not reach keeps it there for no longer than a search.
     assert stepped(missing, [(0, -0.03, False, True)], [second, *REST[1:]]).places[0] == second

@@ -128,7 +128,7 @@ def test_a_foot_gives_way_by_the_force_over_its_stiffness():
     # Critically damped or slower, no foot goes beyond where it goes, and it goes there all the time.
     assert (np.diff(heights[1:300, right]) > 0).all()
     assert (np.diff(heights[1:300, left]) < 0).all()
-    assert np.abs(others).max() < 1e-12
+    assert np.abs(others).max() < 2e-5
     # The angles put the feet where they have gone.
     reached = found.motion.body @ forward_kinematics(found.robot, found.motion.angles)[..., 3, :]
     assert np.abs(reached - found.motion.feet).max() < 1e-9

@@ -119,6 +119,16 @@ def test_a_foot_target_without_support_is_reported_with_the_margin(gait):
     assert controller.limitations == ()
 
 
+def test_a_leg_towards_which_the_body_leans_stays_in_the_gait():
+    controller = controller_of()
+    run(controller, Command(body=(0.06, 0.08, 0, 0, 0, 0)), 5)
+    run(controller, Command(foot_targets={0: (0.25, 0.2, 0.08)}), 10)
+    (found,) = controller.limitations
+    assert (found.kind, found.leg) == (LimitationKind.FOOT_TARGET, "front left")
+    assert controller.gait.name == "tripod"
+    assert controller.contacts[0]
+
+
 def test_a_body_pose_waits_for_the_legs_out_of_the_gait_and_that_is_reported():
     controller = controller_of("wave")
     run(controller, Command(foot_targets={0: (0.2, 0.22, 0.1)}), 16)
