@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -89,7 +89,7 @@ class FootLoads:
         dt: float,
         *,
         out: Sequence[int],
-        centre: complex,
+        centre: Callable[[], complex],
     ) -> Float[np.ndarray, "legs"] | None:
         """Return the upward offsets of compliant feet, from measured forces or joint torques [m]; None for stiff feet.
 
@@ -103,8 +103,8 @@ class FootLoads:
             Joint angles that were commanded in the last tick [rad].
         state, dt, out : GaitState, float, sequence of int
             The gait state; length of the tick [s]; legs taken out of the gait, which bear no load.
-        centre : complex
-            Where the centre of mass is above the feet, x + iy in the heading frame [m].
+        centre : callable
+            Returns where the centre of mass is above the feet, x + iy in the heading frame [m].
         """
         if valid.forces is not None:
             self._learn_zeros(valid.forces, state, dt)
@@ -115,7 +115,7 @@ class FootLoads:
             forces = self._torques.forces(commanded, valid.torques)
         if forces is None or not self._weight:
             return self._filter.step((None,) * len(state.foot), dt)
-        places = [[foot.real, foot.imag, 0.0] for foot in (state.in_heading(state.foot) - centre).tolist()]
+        places = [[foot.real, foot.imag, 0.0] for foot in (state.in_heading(state.foot) - centre()).tolist()]
         stands = [on and leg not in out for leg, on in enumerate(state.down.tolist())]
         expected = zip(forces, balanced_forces(places, stands, [0.0, 0.0], self._weight), stands, strict=True)
         errors = [force[2] - share if force is not None and down else None for force, share, down in expected]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import cmath
+from functools import partial
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -131,7 +132,7 @@ class FeltGround:
         lands = [on and not (self.condition.carried or leg in moves) for leg, on in enumerate(lands)]
         self.contacts.step(measured, down, dt, count=ticks, lands=lands, leaving=leaving, rests=rests)
         self.condition.step([*map(self.contacts.touches, range(len(down)))], valid.attitude, dt, held=self.support.held)
-        centre = self._middle(state)
+        centre = partial(self._middle, state)
         self.offsets = self._loads.offsets(valid, angles, state, dt, out=self._given[0], centre=centre)
         if self.missing.stranded and all(down):
             state = timing.with_first_lift(state, self.missing.stranded[0])
