@@ -52,6 +52,9 @@ def test_a_height_missing_from_a_commanded_body_pose_is_the_poses():
 
 def test_an_axis_that_is_not_at_its_commanded_0_is_a_missing_body_pose():
     assert limitations(changed(3, 0.05)) == {LimitationKind.BODY: (1.0, 0.0)}
+    # Beside an axis that is commanded, that one tells how much is met.
+    both = limitations(changed(3, 0.05) + changed(0, -0.005) - MET)
+    assert both == {LimitationKind.BODY: (1.0, pytest.approx(0.75))}
 
 
 def test_each_rejected_parameter_has_a_limitation():

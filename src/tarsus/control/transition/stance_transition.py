@@ -95,8 +95,9 @@ class WalkParameters:
         missing = [axis for axis in range(SWING_HEIGHT) if abs(gap[axis]) > _TOLERANCE]
         if not missing:
             return []
-        met = [1 - abs(float(gap[axis]) / self.body[axis]) if self.body[axis] else 0.0 for axis in missing]
-        return [cause.limitation(LimitationKind.BODY, asked=1.0, granted=max(min(met), 0.0))]
+        # Where only axes commanded to be 0 are missing, nothing of the pose counts as met.
+        met = [1 - abs(float(gap[axis]) / self.body[axis]) for axis in missing if self.body[axis]]
+        return [cause.limitation(LimitationKind.BODY, asked=1.0, granted=max(min(met, default=0.0), 0.0))]
 
     def rejected(self, now: WalkParameters, posture: Float[np.ndarray, "7"] | None, cause: Cause) -> list[Limitation]:
         """Return the limitations of parameters that are rejected as a whole.
