@@ -50,7 +50,7 @@ def require_number(name: str, value: float, *, zero: bool, most: float = math.in
     Parameters
     ----------
     name : str
-        Its name in messages.
+        Its name in messages, with its index if it is one of several.
     value : float
         The number.
     zero : bool
@@ -64,7 +64,7 @@ def require_number(name: str, value: float, *, zero: bool, most: float = math.in
         If it is not a number, or out of range.
     """
     number = require_float(name, value)
-    unit = _UNITS.get(name, "")
+    unit = _UNITS.get(name.partition("[")[0], "")
     if not 0 <= number < math.inf:
         raise InputError(f"{name} is {number:g}{unit}; it must be a finite number, not negative")
     if number > most:

@@ -17,6 +17,7 @@ import numpy as np
 from tarsus.arrays import Array, as_floats, broadcast_shapes, is_traced, namespace, require_finite, stack_last
 from tarsus.errors import InputError
 from tarsus.gait.gait import Gait
+from tarsus.gait.walk_setup import require_number
 from tarsus.kinematics.pose import Pose
 from tarsus.kinematics.stance import default_body_height, default_stance, default_swing_height
 from tarsus.kinematics.underside import FLOOR_TOLERANCE, floor_depth
@@ -176,9 +177,8 @@ def _require_stroke(stroke: Float[Array, "*#batch"]) -> None:
         return
     values = np.asarray(stroke)
     for place in np.argwhere(values <= 0).tolist():
-        value, where = values[tuple(place)], f"[{', '.join(map(str, place))}]" if place else ""
-        words = f"{value:g} m; it must be a finite number, not negative" if value else "0; it must be greater than 0"
-        raise InputError(f"stroke{where} is {words}")
+        where = f"[{', '.join(map(str, place))}]" if place else ""
+        require_number(f"stroke{where}", values[tuple(place)], zero=False)
 
 
 def _result(sweep: CycleSweep, rows: tuple[Shaped[Array, "..."], ...], batch: tuple[int, ...]) -> CycleTorques:
