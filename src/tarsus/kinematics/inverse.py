@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
-from tarsus.arrays import Array, as_floats, namespace, require_finite, require_shape
+from tarsus.arrays import Array, as_floats, namespace, read_only, require_finite, require_shape
 from tarsus.errors import InputError
 from tarsus.kinematics.batch_solver import solve_legs
 from tarsus.kinematics.pose import Pose
@@ -39,9 +39,9 @@ def inverse_kinematics(
     Returns
     -------
     IKSolution
-        Angles, reach codes and their explanation. For a foot out of reach, the angles are those of the nearest point
-        reachable within the joint limits in that knee branch. A foot that is reachable only with the leg's plane facing
-        away from it (a foot behind the coxa axis) is reached that way.
+        Angles and reach codes, read-only where they are NumPy arrays, and their explanation. For a foot out of reach,
+        the angles are those of the nearest point reachable within the joint limits in that knee branch. A foot that is
+        reachable only with the leg's plane facing away from it (a foot behind the coxa axis) is reached that way.
 
     Raises
     ------
@@ -56,12 +56,8 @@ def inverse_kinematics(
     require_shape("feet", p, (robot.legs, 3))
     require_finite("feet", p)
     angles, reach = solve_legs(robot, p, body, knee=1 if knee == "up" else -1)
-    return IKSolution(robot=robot, feet=_locked_copy(p), body=body, knee=knee, angles=angles, reach=reach)
-
-
-def _locked_copy(feet: Float[Array, "*batch legs 3"]) -> Float[Array, "... legs 3"]:
-    """Return a locked copy of a NumPy array, which the caller may write to."""
-    if isinstance(feet, np.ndarray):
-        feet = feet.copy()
-        feet.setflags(write=False)
-    return feet
+    if isinstance(p, np.ndarray):
+        p = p.copy()  # The caller may write to the feet.
+        for array in (p, angles, reach):
+            read_only(array)
+    return IKSolution(robot=robot, feet=p, body=body, knee=knee, angles=angles, reach=reach)
