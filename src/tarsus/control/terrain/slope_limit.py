@@ -96,6 +96,6 @@ class SlopeLimit:
         if self._tilts:
             # Once stopped, the robot goes on below the lower bound.
             off, most = math.degrees(self._off), math.degrees(_OFF if self._off > _OFF else _LEVELLED)
-            return f"a slope on which legs do not keep the body level: off by {off:.0f} deg, at most {most:.0f} deg"
+            return f"the legs do not keep the body level: off by {off:.0f} deg, at most {most:.0f} deg"
         steepest = f"the steepest one for their friction is {math.degrees(self.steepest):.0f} deg"
         return f"a slope of {math.degrees(self.slope):.0f} deg, on which feet slip; {steepest}"
