@@ -11,6 +11,7 @@ from cross_slopes import Turned
 from gait_robots import preset
 from tarsus.control.limitation import LimitationKind
 from tarsus.control.limiter.protocol import TwistGrant, TwistRequest
+from tarsus.control.limiter.slope_limit import SlopeLimit
 from tarsus.control.pose import slope_stance
 from tarsus.control.pose.posture_feedback import BodyMove, PostureFeedback
 from tarsus.control.pose.slope_stance import SlopeStance
@@ -19,7 +20,6 @@ from tarsus.control.robot_controller import RobotController
 from tarsus.control.sensing.body_condition import BodyCondition
 from tarsus.control.terrain.reach import Reach
 from tarsus.control.terrain.roughness import GroundAdaptation
-from tarsus.control.terrain.slope_limit import SlopeLimit
 from tarsus.control.walk_controller import WalkController
 from tarsus.control.walk_state import TickState, WalkState
 from tarsus.errors import InputError

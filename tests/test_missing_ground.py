@@ -21,7 +21,8 @@ from tarsus.control.terrain.foot_contacts import FootContacts
 from tarsus.control.terrain.ground_contact import met_ground
 from tarsus.control.terrain.missing_ground import MissingGround
 from tarsus.control.terrain.roughness import Roughness
-from tarsus.control.terrain.support import Footing, Search
+from tarsus.control.terrain.search import Search
+from tarsus.control.terrain.support import Footing
 from tarsus.control.walk.felt_feet import FeltFoot
 from tarsus.control.walk.step_timing import StepTiming
 from tarsus.gait.swing_trajectory import quintic

@@ -6,6 +6,7 @@ import cmath
 import math
 
 from tarsus.control.limitation import Limitation, LimitationKind
+from tarsus.control.limiter.slope_limit import SlopeLimit
 from tarsus.control.limiter.stopped_body import StoppedBody
 from tarsus.control.pose.heading_feedback import HeadingFeedback
 from tarsus.control.pose.posture_feedback import BodyMove, Levelling, PostureFeedback, PostureRates
@@ -16,7 +17,6 @@ from tarsus.control.terrain.foot_contacts import FootContacts
 from tarsus.control.terrain.ground_map import GroundMap
 from tarsus.control.terrain.reach import Reach
 from tarsus.control.terrain.roughness import GroundAdaptation, Roughness
-from tarsus.control.terrain.slope_limit import SlopeLimit
 from tarsus.control.terrain.support import Footing, Sinking, off_commanded, sunk_at
 from tarsus.control.transition.executor import TransitionExecutor
 from tarsus.control.walk.state import PHASE_TOLERANCE, GaitState

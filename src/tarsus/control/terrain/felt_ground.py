@@ -18,7 +18,8 @@ from tarsus.control.sensing.validation import rejections
 from tarsus.control.terrain.body_motion import BodyMotion
 from tarsus.control.terrain.ground_contact import hovering, met_ground, not_sunk, put_down, supporting
 from tarsus.control.terrain.missing_ground import SLOW, MissingGround
-from tarsus.control.terrain.support import Footing, Search, Support, Tipping, along_gravity, off_commanded, sunk_at
+from tarsus.control.terrain.search import Search
+from tarsus.control.terrain.support import Footing, Support, Tipping, along_gravity, off_commanded, sunk_at
 from tarsus.control.transition.executor import TransitionExecutor
 from tarsus.control.transition.foothold_transfer import FootholdTransfer
 from tarsus.control.walk.felt_feet import FeltFoot, FeltInputs, GroundUnder, travel_share
@@ -79,15 +80,14 @@ class FeltGround:
     ) -> None:
         self.body, self.contacts, self.ground = body, body.contacts, body.ground
         self.missing = MissingGround(robot.leg_names, scale=body.reach.scale)
-        self.support, self.condition = Support(), BodyCondition()
+        self.support, self.condition, self._swings = Support(), BodyCondition(), SwingMonitor()
         self.offsets: Float[np.ndarray, "legs"] | None = None
         self.readings, self._loads, self._tipping = ContinuedReadings(robot), loads, Tipping(body.reach.scale)
-        self._still, self._swings = True, SwingMonitor()
         self._centre = complex(*centre_of_mass(robot, angles)[:2].tolist())
         # Inputs kept while all is as planned, and what for; ticks and times since contacts and support were looked at.
         self._inputs: FeltInputs | None = None
         self._given: tuple[list[int], bool] = [], True
-        self._rests, self._ticks, self._unread, self._idle = True, 0, 0.0, 0.0
+        self._still, self._rests, self._ticks, self._unread, self._idle = True, True, 0, 0.0, 0.0
 
     def sense(
         self, readings: SensorReadings | None, dt: float, state: GaitState, *, timing: StepTiming, angles: list[Vector]

@@ -9,7 +9,8 @@ from tarsus.control.limiter.protocol import TwistGrant, TwistRequest, leads_towa
 from tarsus.control.terrain.edge import FORGETS, Edge, direction
 from tarsus.control.terrain.ground_map import GroundMap
 from tarsus.control.terrain.obstacles import Obstacles
-from tarsus.control.terrain.support import Footing, Search, holds
+from tarsus.control.terrain.search import Search
+from tarsus.control.terrain.support import Footing, holds
 from tarsus.control.transition.foothold_transfer import FootholdTransfer
 
 __all__ = ["SLOW", "MissingGround"]
@@ -20,13 +21,9 @@ _DEEP, _DEEP_AGAIN, _ROUGHLY_DEEP = 0.75, 0.4, 1.6
 # Depths at which the walk begins to slow down, and stands still, besides how much deeper ground may be [m]; least pace
 # while the foot does not go down, at the end of its reach.
 _SLOWS, _STANDS, _SLOWEST = 0.005, 0.02, 0.25
-# A foot that is measured this far above its command is held up by its leg [m]. Where it is at less depth than the
-# greater of the next two, over the body height and [m], that leg may rest on the edge of a step. The foot then stops
-# searching after a time [s] and so many times the age of the contacts: a foot is also held up by ground that its open
-# switch does not report, but by then other feet have told of that.
-_HELD_UP, _STEP, _LOW_STEP, _HELD, _LATER = 0.007, 0.5, 0.05, 0.3, 5.0
-# Lift of the body at a foot above which that stands on ground that is not felt: the robot does not tip towards it [m].
-_LIFTS = 0.008
+# Time that a foot whose leg may rest on the edge of a step searches [s], besides so many times the age of the contacts:
+# it is also held up by ground that its open switch does not report, but by then other feet have told of that.
+_HELD, _LATER = 0.3, 5.0
 # How far a waiting robot may be raised at a foot that is still lowered: on feet that lose contact in turn it rocks [m].
 _RAISED = 0.005
 # How far the body is off its attitude at a foot that may hold it: such a foot steps back once, after a long search [m].
@@ -171,32 +168,35 @@ class MissingGround:
         slows, deep = deeper + self._scale * _SLOWS, deeper + self._scale * _STANDS
         sure = deeper <= self._scale * _SURE
         for search in searches:
-            leg, depth, falls, lasts, sunk, raised, leans, age = search
-            way = self._edge.seen_from(feet[leg], rest[leg])
-            slowest = 0.0 if falls else _SLOWEST
-            pace = max(1 - (depth - slows) / (deep - slows), slowest)
+            leg, on_step = search.leg, search.on_step(height, self._scale)
+            slowest = 0.0 if search.falls else _SLOWEST
+            pace = max(1 - (search.depth - slows) / (deep - slows), slowest)
             self.pace, self._slows = min((self.pace, self._slows), (pace, self._names[leg]))
-            held_up = raised > self._scale * _HELD_UP and depth - raised < max(_STEP * height, self._scale * _LOW_STEP)
-            self._held[leg] = (before.get(leg, 0.0) + dt) * (held_up and not falls)
-            long = not lasts or self._held[leg] > _HELD + _LATER * age
-            # A foot that has stepped to another place does not search for long there at the end of its reach.
-            hangs = not falls and (depth > deep or not lasts) if leg in self.places else long
-            deepest = _DEEP_AGAIN if leg in self.places else _DEEP
-            missing = depth - max(raised, 0.0) > deepest * height + _ROUGHLY_DEEP * deeper or hangs
-            missing &= abs(leans) < max(self._scale * _LEANS, deeper) or (held and not (lasts or leg in self.places))
-            # The robot tips where the other feet do not hold it, or where it has sunk or leans far at the foot.
-            unheld = not held and sunk > -self._scale * _LIFTS and depth + max(sunk, 0.0) > deep
-            if unheld or sunk > deep or min(leans, depth) > deep:
+            self._held[leg] = (before.get(leg, 0.0) + dt) * (on_step and not search.falls)
+            missing = self._is_missing(search, height, deeper, held=held)
+            way = self._edge.seen_from(feet[leg], rest[leg])
+            if search.tips(deep, self._scale, held=held):
                 self._tip(way)
             if missing and not (self.steps_back(leg, feet[leg]) or self.gives_up(leg)):
-                self.edge = depth if held_up else self.edge
-                self._step_back(leg, depth, way, footholds, sure=sure and not self.edge)
+                self.edge = search.depth if on_step else self.edge
+                self._step_back(leg, search.depth, way, footholds, sure=sure and not self.edge)
         # Feet only slightly below the others are not over a hole, unless the robot tips.
         shallow = all(self._shallow[leg] and not self.tips for leg in self.places)
         self._go_on(shallow, dt)
         if self.places:
             self.pace, self._slows = _SLOWEST * bool(self.stranded), ""
         self._back_off(footing, shallow, dt)
+
+    def _is_missing(self, search: Search, height: float, deeper: float, *, held: bool) -> bool:
+        """Return whether there is no ground at a foot: body height and how much deeper ground may be in [m]."""
+        leg, again = search.leg, search.leg in self.places
+        long = not search.lasts or self._held[leg] > _HELD + _LATER * search.age
+        # A foot that has stepped to another place does not search for long there at the end of its reach.
+        reached = not search.falls and (search.depth > deeper + self._scale * _STANDS or not search.lasts)
+        deepest = (_DEEP_AGAIN if again else _DEEP) * height + _ROUGHLY_DEEP * deeper
+        missing = search.depth - max(search.raised, 0.0) > deepest or (reached if again else long)
+        level = abs(search.leans) < max(self._scale * _LEANS, deeper)
+        return missing and (level or (held and not (again or search.lasts)))
 
     def _go_on(self, shallow: bool, dt: float) -> None:
         """Decide whether the walk goes on where it has waited, with no foot far below the others."""

@@ -10,7 +10,7 @@ from typing import NamedTuple
 from tarsus.control.readings import RollPitch
 from tarsus.control.walk.state import GaitState
 
-__all__ = ["HALTING", "Footing", "Search", "Support", "Tipping", "along_gravity", "holds", "off_commanded", "sunk_at"]
+__all__ = ["HALTING", "Footing", "Support", "Tipping", "along_gravity", "holds", "off_commanded", "sunk_at"]
 
 # Rates at which the pace falls and rises [1/s].
 _FALL, _RISE = 10.0, 6.0
@@ -33,32 +33,6 @@ _SLIDES, _TIMES, _AT_FIRST, _DEEPER, _ROLLS, _LEARNT = 0.003, 4.0, 0.01, 0.5, 0.
 _SHIFTS, _FARTHEST = 0.05, 0.08
 HALTING = 0.5
 """Below this pace the robot waits for support."""
-
-
-class Search(NamedTuple):
-    """A foot that should stand and feels nothing.
-
-    Attributes
-    ----------
-    leg, depth : int, float
-        The leg; how far below the expected ground its foot is [m].
-    falls, lasts : bool
-        Whether the foot is still going down; whether it may search on, as it has not done so for long.
-    sunk, raised, leans : float
-        How far the body has sunk at the foot since it lost contact; how far the foot is above its command, 0 where that
-        is not measured; how much lower the body is there than in the attitude to keep [m].
-    age : float
-        Age of the contacts [s].
-    """
-
-    leg: int
-    depth: float
-    falls: bool
-    lasts: bool
-    sunk: float = 0.0
-    raised: float = 0.0
-    leans: float = 0.0
-    age: float = 0.0
 
 
 class Footing(NamedTuple):
