@@ -325,6 +325,39 @@ def test_a_slippery_slope_is_refused_with_its_angle_and_the_way_back_stays_open(
     assert not limit.refuses
 
 
+def test_a_slope_that_is_found_too_steep_on_the_way_back_refuses_the_way_on():
+    limit = SlopeLimit(0.8)
+    edge, steep = (FootPlane(0.0, math.tan(limit.steepest + off), 0.0) for off in (-0.01, 0.01))
+    limit.step(edge, 0.1 + 0j, 0.5)
+    for _ in range(3):
+        limit.step(steep, -0.05 + 0j, 0.04)
+        assert not limit.refuses
+    limit.step(steep, 0.05 + 0j, 0.04)
+    assert limit.refuses
+    # Turning on the spot with what is left of the velocity, and walking along the slope, are not refused.
+    for velocity in (0.001 + 0j, 0.01 + 0.1j):
+        limit.step(steep, velocity, 0.04)
+        assert not limit.refuses
+    # Back where it began, the way further down is the one on which the slope was met.
+    limit.step(FootPlane(0.0, 0.0, 0.0), 0j, 0.04)
+    limit.step(edge, -0.1 + 0j, 1.5)
+    limit.step(steep, 0.05 + 0j, 0.04)
+    assert not limit.refuses
+    limit.step(steep, -0.05 + 0j, 0.04)
+    assert limit.refuses
+
+
+@pytest.mark.parametrize("friction", [0.3, 0.35, 0.4])
+def test_low_friction_does_not_refuse_level_ground(friction):
+    limit, steep = SlopeLimit(friction), FootPlane(0.0, 0.3, 0.0)
+    limit.step(steep, 0.1 + 0j, 0.04)
+    assert limit.refuses
+    # The slope that is felt on level ground is not exactly 0.
+    limit.step(FootPlane(0.0, 0.03, 0.0), 0.1 + 0j, 0.04)
+    assert not limit.refuses
+    assert not limit.holds
+
+
 def test_a_body_that_legs_do_not_keep_level_stops_on_a_slope_until_it_is_level_again():
     limit, up, dt, state = SlopeLimit(0.8), FootPlane(0.0, 0.3, 0.0), 0.04, WalkController(preset("strider"))._tick.gait
 
@@ -388,7 +421,7 @@ def test_a_robot_that_its_legs_do_not_keep_level_does_not_tip_over_backwards():
 
 def test_less_friction_refuses_gentler_slopes():
     steepest = [SlopeLimit(friction).steepest for friction in (0.3, 0.6, 0.8, 1.0)]
-    assert steepest[0] == 0.0
+    assert math.tan(steepest[0]) == pytest.approx(0.1)
     assert steepest == sorted(steepest)
     with pytest.raises(InputError, match="friction is -1"):
         GroundAdaptation(friction=-1.0)
