@@ -72,6 +72,21 @@ def test_what_gravity_pulls_a_tilted_body_with_is_no_obstacle():
     assert asked(pushed(0.3 * WEIGHT), 0.1, 0.0, 0.0).fraction == 0.0
     assert asked(pushed(0.3 * WEIGHT, tilt), 0.1, 0.0, 0.0).fraction == 1.0
     assert pushed(0.3 * WEIGHT, tilt).push == pytest.approx(0.3 - np.sin(0.3), abs=0.02)
+    # Nose down, the legs hold it back along themselves, which coxae do not tell.
+    assert pushed(0.0, (0.0, 0.3)).push <= 0.01
+    assert pushed(0.3 * WEIGHT, (0.0, 0.3)).push == pytest.approx(pushed(0.3 * WEIGHT).push)
+
+
+@pytest.mark.no_cover
+def test_a_robot_that_walks_with_its_nose_down_meets_no_obstacle():
+    plant = SimulatedPlant(STRIDER)
+    controller, dt = tarsus.RobotController(STRIDER), 0.01
+    plant.start(controller.output)
+    command = tarsus.Command(twist=(0.1, 0.0, 0.0), body=(0.0, 0.0, 0.0, 0.0, 0.25, 0.0))
+    for _ in range(round(9.0 / dt)):
+        controller.step(command, dt, plant.step(controller.output, dt))
+    assert plant.state.body.rpy[1] > 0.2
+    assert plant.state.body.position[0] > 0.85 * 0.9
 
 
 def test_without_torques_or_masses_and_without_a_way_nothing_is_found():

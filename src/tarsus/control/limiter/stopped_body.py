@@ -62,13 +62,16 @@ class StoppedBody:
         push, angles, torques = 0.0, measured.joint_angles, measured.torques
         roll, pitch = measured.attitude or (0.0, 0.0)
         if angles is not None and torques is not None and velocity and self._weight:
-            force = self._weight * complex(math.sin(pitch), -math.sin(roll) * math.cos(pitch))
+            way = velocity / abs(velocity) * cmath.exp(-1j * yaw)
+            gravity = complex(math.sin(pitch), -math.sin(roll) * math.cos(pitch))
+            # Coxae bear only a part of the weight along the plane of the body: it counts where it lowers the push.
+            push = min((gravity * way.conjugate()).real, 0.0)
             feet = self._solver.feet([each or _ANY for each in angles])
             for leg in bears:
                 torque = torques[leg]
                 if angles[leg] is not None and torque is not None:
-                    force -= 1j * torque[0] / (complex(*feet[leg][:2]) - self._mounts[leg]).conjugate()
-            push = (force * cmath.exp(1j * yaw) * velocity.conjugate()).real / (self._weight * abs(velocity))
+                    across = 1j * torque[0] / (complex(*feet[leg][:2]) - self._mounts[leg]).conjugate()
+                    push -= (across * way.conjugate()).real / self._weight
         self.push += min(dt / _TIME, 1.0) * (push - self.push)
         self._time = (self._time + dt) * (self.push > _STOPPED)
         if self._time > _LASTS:
