@@ -73,13 +73,29 @@ def touching_in_swing(phase, height, foot):
     return state, body, StepTiming(setup.gait, 1.0)
 
 
-def seen(missing, holes, edge=1.0):
-    missing.sees(SimpleNamespace(holes=holes, is_hole=lambda place: place.real > edge), REST)
+def seen(missing, holes, edge=1.0, dt=0.01):
+    missing.sees(SimpleNamespace(holes=holes, is_hole=lambda place: place.real > edge), REST, dt)
 
 
 def limited(missing, *twist):
     request = TwistRequest(twist, 0.01, None, np.zeros(3))
     return missing.limit(request, TwistGrant())
+
+
+def test_a_hole_that_was_seen_is_refused_while_it_is_seen():
+    missing, place = MissingGround([str(leg) for leg in range(6)]), REST[0] + 0.05
+    seen(missing, {0: place})
+    assert limited(missing, 0.1, 0.0, 0.0).fraction == 0.0
+    for _ in range(50):
+        seen(missing, {}, place.real - 0.01, dt=0.04)
+        assert limited(missing, 0.1, 0.0, 0.0).fraction == 0.0
+    # A single picture with a hole, or without, changes nothing.
+    for edge in (1.0, place.real - 0.01, *[1.0] * 24):
+        seen(missing, {}, edge, dt=0.04)
+        assert limited(missing, 0.1, 0.0, 0.0).fraction == 0.0
+    for _ in range(3):
+        seen(missing, {}, dt=0.04)
+    assert limited(missing, 0.1, 0.0, 0.0).fraction == 1.0
 
 
 def test_the_walk_slows_down_the_deeper_a_foot_searches_and_less_on_rough_ground():

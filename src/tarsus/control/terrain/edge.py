@@ -7,6 +7,7 @@ import math
 from collections.abc import Sequence
 
 from tarsus.control.limiter.protocol import leads_towards
+from tarsus.control.terrain.ground_map import GroundMap
 
 __all__ = ["FORGETS", "Edge", "direction"]
 
@@ -17,6 +18,8 @@ FORGETS = 6.0
 _MOVES = 0.005
 # Offset of a foot from its rest foothold above which it tells the direction of the edge [m].
 _OFF = 0.01
+# Time after which ground that was seen to be a hole and is not any more counts as solid [s].
+_SOLID = 1.0
 
 
 class Edge:
@@ -35,6 +38,8 @@ class Edge:
         Direction of the edge that feet have met, and of the edge that the robot leaves; 0 without one.
     since : float
         Time without a foot over a hole [s]; starts again when the robot leaves an edge.
+    hole : complex or None
+        Place of a hole that was seen, not felt, in the heading frame [m]; None without one.
     twist : sequence of float
         The last twist before a foot searched for the ground, with which the robot met the edge [m/s, m/s, rad/s].
     """
@@ -42,6 +47,8 @@ class Edge:
     def __init__(self, scale: float) -> None:
         self._scale = scale
         self.way, self.left, self.since, self._yaw = 0j, 0j, 0.0, 0.0
+        self.hole: complex | None = None
+        self._solid = 0.0
         self.twist: Sequence[float] = (0.0, 0.0, 0.0)
 
     @property
@@ -60,13 +67,19 @@ class Edge:
     def turn_to(self, yaw: float) -> complex:
         """Take the yaw of the heading frame [rad]; return the factor that keeps directions fixed to the ground."""
         turn, self._yaw = cmath.exp(1j * (self._yaw - yaw)), yaw
-        self.way, self.left = self.way * turn, self.left * turn
+        self.way, self.left, self.hole = self.way * turn, self.left * turn, self.hole and self.hole * turn
         return turn
+
+    def look_again(self, ground: GroundMap, dt: float) -> None:
+        """Forget an edge at a hole that was seen, once it has been solid ground for a time; `dt` in [s]."""
+        self._solid = (self._solid + dt) * (self.hole is not None and not ground.is_hole(self.hole))
+        if self._solid > _SOLID:
+            self.leave(self.way)
 
     def leave(self, obstacle: complex) -> None:
         """Remember the edge as the one that the robot leaves, unless its direction is that of an obstacle."""
         self.left = 0j if self.way == obstacle else self.way
-        self.way, self.since = 0j, 0.0
+        self.way, self.since, self.hole = 0j, 0.0, None
 
     def seen_from(self, foot: complex, rest: complex) -> complex:
         """Return the direction of the edge at a foot.

@@ -234,7 +234,7 @@ class FeltGround:
         contacts.hovering = hovering(state, contacts, depths)
         held = [self.condition.in_air or contacts.stands(leg) for leg in range(len(depths))]
         stands = [on and not missing.steps_back(leg, footing.places[leg]) for leg, on in enumerate(held)]
-        missing.sees(self.ground, footholds.rest.tolist())
+        missing.sees(self.ground, footholds.rest.tolist(), dt)
         waits = self.condition.carried or (self._rests and self.support.held and low == footing.down)
         searches = [] if waits else self._searches(state, footing, stands)
         missing.lost = contacts.tips(footing, deeper)

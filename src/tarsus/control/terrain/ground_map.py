@@ -167,9 +167,12 @@ class GroundMap:
         return float(self.expected(np.array(place))) if self.given else self.plane.at(place)
 
     def lowest_near(self, place: complex) -> float:
-        """Return the least height at which the ground is expected around a place [m]."""
-        within = self._scale * _OFF
-        return float(lowest_near(self.expected, np.array(place), within=within)) if self.given else self.plane.at(place)
+        """Return the least height at which the ground is expected around a place [m].
+
+        Known ground above the plane of the feet does not count: a foot that feels none there shows that it is wrong.
+        """
+        found = lowest_near(self.expected, np.array(place), within=self._scale * _OFF) if self.given else math.inf
+        return min(float(found), float(self.plane.at(place)))
 
     def choose(self, state: GaitState, reach: Reach, footholds: FootholdTransfer) -> None:
         """Choose footholds for feet that have lifted off, once in each swing, and again in place of a hole.

@@ -9,25 +9,20 @@ from tarsus.control.limiter.protocol import TwistGrant, TwistRequest, leads_towa
 from tarsus.control.terrain.edge import FORGETS, Edge, direction
 from tarsus.control.terrain.ground_map import GroundMap
 from tarsus.control.terrain.obstacles import Obstacles
-from tarsus.control.terrain.search import Search
+from tarsus.control.terrain.search import STANDS, Search
 from tarsus.control.terrain.support import Footing, holds
 from tarsus.control.transition.foothold_transfer import FootholdTransfer
 
 __all__ = ["SLOW", "MissingGround"]
 
-# Depth of a foot without contact above which there is a hole, over the body height: at first, and where it has stepped
-# back to; on rough ground both are greater by this factor times the depth that the roughness allows.
-_DEEP, _DEEP_AGAIN, _ROUGHLY_DEEP = 0.75, 0.4, 1.6
-# Depths at which the walk begins to slow down, and stands still, besides how much deeper ground may be [m]; least pace
-# while the foot does not go down, at the end of its reach.
-_SLOWS, _STANDS, _SLOWEST = 0.005, 0.02, 0.25
+# Depth at which the walk begins to slow down, besides how much deeper ground may be [m]; least pace while the foot does
+# not go down, at the end of its reach.
+_SLOWS, _SLOWEST = 0.005, 0.25
 # Time that a foot whose leg may rest on the edge of a step searches [s], besides so many times the age of the contacts:
 # it is also held up by ground that its open switch does not report, but by then other feet have told of that.
 _HELD, _LATER = 0.3, 5.0
 # How far a waiting robot may be raised at a foot that is still lowered: on feet that lose contact in turn it rocks [m].
 _RAISED = 0.005
-# How far the body is off its attitude at a foot that may hold it: such a foot steps back once, after a long search [m].
-_LEANS = 0.02
 # Pace below which the walk says why it is slow.
 SLOW = 0.85
 # Missing ground is certain only while ground may be at most this much deeper than expected [m].
@@ -165,7 +160,7 @@ class MissingGround:
             self._tip(feet[self.lost] / abs(feet[self.lost]))
             self.pace, self._slows = 0.0, self._names[self.lost]
         before, self._held = self._held, {}
-        slows, deep = deeper + self._scale * _SLOWS, deeper + self._scale * _STANDS
+        slows, deep = deeper + self._scale * _SLOWS, deeper + self._scale * STANDS
         sure = deeper <= self._scale * _SURE
         for search in searches:
             leg, on_step = search.leg, search.on_step(height, self._scale)
@@ -173,7 +168,8 @@ class MissingGround:
             pace = max(1 - (search.depth - slows) / (deep - slows), slowest)
             self.pace, self._slows = min((self.pace, self._slows), (pace, self._names[leg]))
             self._held[leg] = (before.get(leg, 0.0) + dt) * (on_step and not search.falls)
-            missing = self._is_missing(search, height, deeper, held=held)
+            long = not search.lasts or self._held[leg] > _HELD + _LATER * search.age
+            missing = search.is_missing(height, deeper, self._scale, held=held, long=long, again=leg in self.places)
             way = self._edge.seen_from(feet[leg], rest[leg])
             if search.tips(deep, self._scale, held=held):
                 self._tip(way)
@@ -186,17 +182,6 @@ class MissingGround:
         if self.places:
             self.pace, self._slows = _SLOWEST * bool(self.stranded), ""
         self._back_off(footing, shallow, dt)
-
-    def _is_missing(self, search: Search, height: float, deeper: float, *, held: bool) -> bool:
-        """Return whether there is no ground at a foot: body height and how much deeper ground may be in [m]."""
-        leg, again = search.leg, search.leg in self.places
-        long = not search.lasts or self._held[leg] > _HELD + _LATER * search.age
-        # A foot that has stepped to another place does not search for long there at the end of its reach.
-        reached = not search.falls and (search.depth > deeper + self._scale * _STANDS or not search.lasts)
-        deepest = (_DEEP_AGAIN if again else _DEEP) * height + _ROUGHLY_DEEP * deeper
-        missing = search.depth - max(search.raised, 0.0) > deepest or (reached if again else long)
-        level = abs(search.leans) < max(self._scale * _LEANS, deeper)
-        return missing and (level or (held and not (again or search.lasts)))
 
     def _go_on(self, shallow: bool, dt: float) -> None:
         """Decide whether the walk goes on where it has waited, with no foot far below the others."""
@@ -271,12 +256,14 @@ class MissingGround:
             self._edge.way, self._again = self.obstacles.found, max(self._again, _AGAIN - 1)
         return start - foot
 
-    def sees(self, ground: GroundMap, rest: Sequence[complex]) -> None:
-        """Take note of feet in the air that would be put down into a hole, and of rest footholds [m] in one."""
+    def sees(self, ground: GroundMap, rest: Sequence[complex], dt: float) -> None:
+        """Take note of holes at feet in the air and at rest footholds [m]; `dt` is the time since the last call [s]."""
         self._over = any(leads_towards(at, self._edge.way) and ground.is_hole(at) for at in rest)
         for leg, place in ground.holes.items():
-            self._edge.way = direction(place - rest[leg], rest[leg])
+            self._edge.way, self._edge.hole = direction(place - rest[leg], rest[leg]), place
             self._cause, self._again = Cause("no ground within reach at its next foothold", self._names[leg]), _AGAIN
+        if not self.places:
+            self._edge.look_again(ground, dt)
 
     def held(self, shift: complex) -> complex:
         """Return the part of a velocity of all feet that would move the body on towards a refused edge [m/s]."""

@@ -4,8 +4,15 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-__all__ = ["Search"]
+__all__ = ["STANDS", "Search"]
 
+STANDS = 0.02
+"""Depth at which the walk stands still, besides how much deeper ground may be [m]."""
+# Depth of a foot without contact above which there is a hole, over the body height: at first, and where it has stepped
+# back to; on rough ground both are greater by this factor times the depth that the roughness allows.
+_DEEP, _DEEP_AGAIN, _ROUGHLY_DEEP = 0.75, 0.4, 1.6
+# How far the body is off its attitude at a foot that may hold it: such a foot steps back once, after a long search [m].
+_LEANS = 0.02
 # A foot that is measured this far above its command is held up by its leg [m]. Where it is at less depth than the
 # greater of the next two, over the body height and [m], that leg may rest on the edge of a step.
 _HELD_UP, _STEP, _LOW_STEP = 0.007, 0.5, 0.05
@@ -59,3 +66,22 @@ class Search(NamedTuple):
         """
         unheld = not held and self.sunk > -scale * _LIFTS and self.depth + max(self.sunk, 0.0) > deep
         return unheld or self.sunk > deep or min(self.leans, self.depth) > deep
+
+    def is_missing(self, height: float, deeper: float, scale: float, *, held: bool, long: bool, again: bool) -> bool:
+        """Return whether there is no ground at the foot.
+
+        Parameters
+        ----------
+        height, deeper, scale : float
+            Body height; how much deeper ground may be than expected [m]; factor by which lengths are reduced on short
+            legs, 0 to 1.
+        held, long, again : bool
+            Whether the feet that stand hold the robot; whether the foot has searched for long; whether it has stepped
+            to another place.
+        """
+        # At another place, a foot does not search for long at the end of its reach.
+        reached = not self.falls and (self.depth > deeper + scale * STANDS or not self.lasts)
+        deepest = (_DEEP_AGAIN if again else _DEEP) * height + _ROUGHLY_DEEP * deeper
+        missing = self.depth - max(self.raised, 0.0) > deepest or (reached if again else long)
+        level = abs(self.leans) < max(scale * _LEANS, deeper)
+        return missing and (level or (held and not (again or self.lasts)))
