@@ -18,7 +18,7 @@ from tarsus.gait.stance.support_stance import support_stance
 from tarsus.incremental import complete
 from tarsus.kinematics.mass import centre_of_mass, total_mass
 from tarsus.robot.remaining import remaining_robot, turned_robot
-from tarsus.simulation import SimulatedPlant
+from tarsus.simulation import SimulatedPlant, terrain
 
 STRIDER = tarsus.load_robot("strider")
 DT = 0.02
@@ -399,6 +399,44 @@ def test_told_of_it_a_robot_walks_stands_and_sits_without_a_leg():
         output = controller.step(tarsus.Command(state="lying"), DT)
     assert output.state == "lying"
     assert not [each for each in output.limitations if each.kind == "gait"]
+
+
+@pytest.mark.parametrize(("name", "slope", "share"), [("strider", 0.25 + 0.1j, 1.0), ("strider", 0.9j, 0.25)])
+def test_a_walk_begins_on_a_slope_as_far_as_its_legs_reach(name, slope, share):
+    walk = tarsus.WalkController(tarsus.load_robot(name))
+    flat = walk.feet
+    walk.begin_on(slope)
+    walk.step((0.0, 0.0, 0.0), DT)
+    assert walk.slope == pytest.approx(share * slope)
+    assert walk.body.rpy[:2] == pytest.approx(0.0)
+    # The balls of the feet roll a little.
+    assert np.abs((walk.feet - flat)[:, :2]).max() < 0.005
+    rise = share * (flat[:, 0] * slope.real + flat[:, 1] * slope.imag)
+    assert walk.feet[:, 2] - flat[:, 2] == pytest.approx(rise, abs=0.002)
+
+
+def test_a_walk_on_a_slope_that_no_leg_reaches_begins_level():
+    walk = tarsus.WalkController(STRIDER)
+    before = walk.angles
+    walk.begin_on(20.0 + 0j)
+    assert np.array_equal(walk.step((0.0, 0.0, 0.0), DT), before)
+    assert walk.slope == 0j
+
+
+@pytest.mark.no_cover
+@pytest.mark.parametrize(("name", "leg"), [("strider", 2), ("phantomx", 0)])
+def test_a_leg_taken_out_on_a_slope_leaves_the_body_level(name, leg):
+    """The body was along the slope of 15 deg at once."""
+    robot = tarsus.load_robot(name)
+    plant = SimulatedPlant(robot, terrain=terrain.Ramp(slope=math.radians(15.0), start=-2.0, length=8.0))
+    controller, tilts = tarsus.RobotController(robot), []
+    plant.start(controller.output)
+    for tick in range(500):
+        if tick == 250:
+            controller.leg_failures.failed[leg] = 1
+        controller.step((0.0, 0.0, 0.0), DT, plant.step(controller.output, DT))
+        tilts.append(np.abs(plant.state.body.rpy[:2]).max())
+    assert max(tilts[245:]) < math.radians(9.0)
 
 
 @pytest.mark.parametrize("lost", [{0: 0, 1: 1, 2: 2}, dict.fromkeys(range(6), 1)])

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import cmath
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
@@ -163,6 +164,16 @@ class WalkController:
         self.time += dt
         return self.angles
 
+    def begin_on(self, slope: complex) -> None:
+        """Begin in a stance on a slope that has been felt before, with the body as it stands on level ground.
+
+        Parameters
+        ----------
+        slope : complex
+            Rise of the ground along x and y of the body [m/m]; of what is beyond the legs' reach, only a part counts.
+        """
+        self._tick = self._tick._replace(gait=self._walk.on_slope(slope))
+
     def joints_held(self) -> None:
         """Note that the joints have been held in place: the walk continues from rest."""
         self._walk.time_scaling.joints_held()
@@ -200,6 +211,12 @@ class WalkController:
         """Position and yaw of the heading frame in G: x, y [m], yaw [rad]."""
         state = self._tick.gait
         return state.origin.real, state.origin.imag, state.yaw
+
+    @property
+    def slope(self) -> complex:
+        """Rise of the plane of the feet along x and y of a level body [m/m]; 0 where no ground is felt."""
+        plane, yaw = self._walk.ground.ground.plane, float(self._tick.gait.moved_posture[5])
+        return complex(plane.slope_x, plane.slope_y) * cmath.exp(-1j * yaw)
 
     @property
     def body(self) -> Pose:

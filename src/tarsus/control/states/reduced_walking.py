@@ -56,6 +56,8 @@ class ReducedWalking(Walking):
         Failed legs, with the failed joint of each; the present state of the robot.
     speeds : array, shape (legs, 3)
         Present joint speeds [rad/s].
+    slope : complex
+        Rise of the ground along x and y of the body, on which that is kept as it is [m/m]; 0 where none is felt.
     options
         As for `WalkController`.
 
@@ -76,12 +78,15 @@ class ReducedWalking(Walking):
         failed: Mapping[int, int],
         now: Snapshot,
         speeds: Float[np.ndarray, "legs 3"],
+        slope: complex = 0j,
         **options: Any,
     ) -> None:
         self.failed = dict(failed)
         self._robot, self._legs = robot, [leg for leg in range(robot.legs) if leg not in failed]
         rest = remaining_robot(robot, self._legs)
         super().__init__(_fastest_walk(rest, **options))
+        if slope:
+            self.controller.begin_on(slope)
         # Joint angles of the remaining legs where those of the walk controller, with its turned legs, are 0 [rad].
         self._zero = np.zeros((len(self._legs), 3))
         self._zero[:, 0] = np.asarray(self.controller.robot.mount_yaw) - np.asarray(rest.mount_yaw)
@@ -226,9 +231,10 @@ class LegFailures:
         lost = activity.failed if isinstance(activity, ReducedWalking) else {}
         if self.sits or self.failed.keys() <= lost.keys():
             return activity
-        after = activity.snapshot
+        after, slope = activity.snapshot, activity.controller.slope
+        speeds = (after.angles - now.angles) / dt
         try:
-            return ReducedWalking(self._robot, self.failed, after, (after.angles - now.angles) / dt, **self._options)
+            return ReducedWalking(self._robot, self.failed, after, speeds, slope, **self._options)
         except TarsusError as error:
             self._not_walkable, self._cause = dict(self.failed), str(error)
         return activity

@@ -2,18 +2,26 @@
 
 from __future__ import annotations
 
+import numpy as np
+
 from tarsus.control.sensing.foot_loads import FootLoads
 from tarsus.control.terrain.body_motion import BodyMotion
 from tarsus.control.terrain.felt_ground import FeltGround
 from tarsus.control.transition.executor import TransitionExecutor
 from tarsus.control.transition.planner import TransitionPlanner
 from tarsus.control.transition.stance_transition import StanceTransition
+from tarsus.control.walk.felt_feet import FeltFoot
 from tarsus.control.walk.foot_targets import FootTargets
 from tarsus.control.walk.joint_solver import JointSolver
 from tarsus.control.walk.state import GaitState
 from tarsus.control.walk.time_scaling import TimeScaling
+from tarsus.gait.foot_plane import FootPlane
+from tarsus.kinematics.inverse import inverse_kinematics
 
 __all__ = ["WalkComponents"]
+
+# Shares of a slope to which feet that do not reach it are put.
+_SHARES = (1.0, 0.75, 0.5, 0.25)
 
 
 class WalkComponents:
@@ -56,3 +64,23 @@ class WalkComponents:
         self.initial = GaitState.standing(stance.rest, self.transitions.pose.target)
         self.time_scaling = TimeScaling(self.solver.angles(self.initial), planner.joint_limits, robot.limits)
         self.ground = FeltGround(robot, self.time_scaling.angles, body=body, loads=loads)
+
+    def on_slope(self, slope: complex) -> GaitState:
+        """Return the gait state at the start of a robot that has felt a slope; as much of it as all legs reach.
+
+        Parameters
+        ----------
+        slope : complex
+            Rise along x and y of the heading frame [m/m].
+        """
+        foot, legs = self.initial.foot, self.robot.legs
+        for plane in (FootPlane(0.0, share * slope.real, share * slope.imag) for share in _SHARES):
+            heights = np.array(plane.at(foot))
+            feet = self.initial.body.inverse() @ np.stack((foot.real, foot.imag, heights), axis=-1)
+            if inverse_kinematics(self.robot, feet).ok:
+                self.ground.ground.plane = plane
+                state = self.initial._replace(ground_height=heights, felt=[FeltFoot()] * legs)
+                angles = self.solver.angles(state)
+                self.time_scaling = TimeScaling(angles, self.planner.joint_limits, self.robot.limits)
+                return state
+        return self.initial
