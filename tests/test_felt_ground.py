@@ -28,7 +28,7 @@ from tarsus.control.walk_controller import WalkController
 from tarsus.control.walk_state import TickState
 from tarsus.gait.foot_plane import FootPlane, fitted_plane
 from tarsus.gait.stance.reachable_heights import reachable_heights
-from tarsus.simulation import SensorSuite, SimulatedPlant
+from tarsus.simulation import SensorSuite, SimulatedPlant, terrain
 from tarsus.simulation.sensors.suite import FootSwitch, Sensor
 
 STRIDER = tarsus.load_robot("strider")
@@ -250,6 +250,32 @@ def test_support_slows_the_walk_down_only_where_feet_wait_for_long():
         support.step(stays=False, lifts=False, dt=0.02, swing_time=0.5)
     assert not support.waits
     assert support.pace == 0.0
+
+
+@pytest.mark.parametrize("lifts", [True, False])
+def test_feet_in_the_air_are_put_down_once_the_robot_has_waited_for_long(lifts):
+    support, waited = Support(), 0.0
+    while not support.hangs(refuses=False) and waited < 4.0:
+        support.step(stays=False, lifts=lifts, dt=0.02, swing_time=0.5)
+        waited += 0.02
+    assert 0.9 < waited < 1.1
+    assert support.hangs(refuses=True)
+    support.step(stays=True, lifts=lifts, dt=0.02, swing_time=0.5)
+    assert not support.hangs(refuses=False)
+
+
+@pytest.mark.no_cover
+def test_a_robot_without_a_leg_does_not_stand_for_good_on_a_slope():
+    """A foot that hung 17 mm over the ground kept the others from holding the robot, and never came down."""
+    plant, dt = SimulatedPlant(tarsus.load_robot("makeyourpet"), terrain=terrain.Ramp(slope=np.radians(12.0))), 0.01
+    controller = tarsus.RobotController(plant.robot)
+    plant.start(controller.output)
+    controller.leg_failures.failed[3] = 0
+    ways = []
+    for _ in range(3000):
+        controller.step((0.05, 0.0, 0.0), dt, plant.step(controller.output, dt))
+        ways.append(plant.state.body.position[0])
+    assert ways[-1] - ways[1500] > 0.05
 
 
 @pytest.mark.parametrize("ahead", [(1, 3, 5), range(6)])

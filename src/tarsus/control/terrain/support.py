@@ -19,6 +19,8 @@ _PATIENCE = 0.3
 # Time without support after which the pace falls, and over which it falls to 0; a third of it before feet that wait
 # slow the walk [s].
 _GRACE = 0.15
+# Time of waiting after which feet in the air are put down: they may hang, as the walk no longer lowers them [s].
+_HANGS = 1.0
 # Margin of a centre of mass inside the support polygon: it sees neighbouring feet less than pi apart, by this [rad].
 _LEAST_ANGLE = 0.02
 # Where contacts are estimated: least sinking of the body at a foot at which it tips [m], from the mean tilt over a time
@@ -220,6 +222,10 @@ class Support:
     def halts(self) -> bool:
         """Whether the robot waits until its feet hold it."""
         return self.pace < HALTING
+
+    def hangs(self, *, refuses: bool) -> bool:
+        """Return whether a robot that waits has to put down feet in the air: at once where the motion is refused."""
+        return self.halts and (refuses or max(self._waited, self._unsupported) > _HANGS)
 
     def holds(self, legs: list[int], footing: Footing, *, anew: bool) -> bool:
         """Return whether feet hold the robot; computed again only for other feet, or when asked to.
