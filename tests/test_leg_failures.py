@@ -13,7 +13,7 @@ import tarsus
 from tarsus.control.readings import ValidReadings
 from tarsus.control.sensing.servo_monitor import ServoMonitor
 from tarsus.control.states.reduced_walking import ReducedWalking
-from tarsus.errors import InputError
+from tarsus.errors import InputError, TarsusError
 from tarsus.gait.stance.support_stance import support_stance
 from tarsus.incremental import complete
 from tarsus.kinematics.mass import centre_of_mass, total_mass
@@ -437,6 +437,40 @@ def test_a_leg_taken_out_on_a_slope_leaves_the_body_level(name, leg):
         controller.step((0.0, 0.0, 0.0), DT, plant.step(controller.output, DT))
         tilts.append(np.abs(plant.state.body.rpy[:2]).max())
     assert max(tilts[245:]) < math.radians(9.0)
+
+
+@pytest.mark.parametrize(("failed", "out"), [({1: 2}, {1}), ({1: 2, 3: 1}, {1, 3}), ({3: 1}, {3}), ({}, {1})])
+def test_a_robot_that_sat_down_without_a_leg_stands_up_the_same_way_where_no_other_is_found(monkeypatch, failed, out):
+    def refuse(*_args, **_more):
+        raise TarsusError("no way")
+
+    monkeypatch.setattr("tarsus.control.robot_controller.stand_up", refuse)
+    controller = tarsus.RobotController(STRIDER)
+
+    def reaches(command, state):
+        for _ in range(500):
+            output = controller.step(command, DT)
+            assert output.interventions == ()
+            if output.state == state:
+                return output
+        raise AssertionError(f"{controller.state} instead of {state}: {controller.output.limitations}")
+
+    controller.leg_failures.failed[1] = 2
+    reaches((0.05, 0.0, 0.0), "walking")
+    reaches(tarsus.Command(state="lying"), "lying")
+    # Meanwhile another leg fails, or the leg is repaired.
+    controller.leg_failures.failed.clear()
+    controller.leg_failures.failed.update(failed)
+    reaches(tarsus.Command(state="standing"), "standing")
+    output = reaches((0.05, 0.0, 0.0), "walking")
+    named = {each.leg for each in output.limitations if each.kind == "gait"}
+    assert named == {STRIDER.leg_names[leg] for leg in out}
+    before = output.body.position[0]
+    for _ in range(300):
+        output = controller.step((0.05, 0.0, 0.0), DT)
+    assert output.body.position[0] - before > 0.04
+    assert not output.contacts[list(out)].any()
+    reaches(tarsus.Command(state="lying"), "lying")
 
 
 @pytest.mark.parametrize("lost", [{0: 0, 1: 1, 2: 2}, dict.fromkeys(range(6), 1)])

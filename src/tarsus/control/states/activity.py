@@ -285,7 +285,7 @@ def way_back(activity: Activity, change: RobotState) -> Activity:
         The present activity; the change, such as RISING.
     """
     down = activity.after if isinstance(activity, Resting) and change is RobotState.RISING else None
-    if down is None or down.braking is not None or type(down.before) is not Walking:
+    if down is None or down.braking is not None or not isinstance(down.before, Walking):
         return activity
     down.state = RobotState.RISING
     down.turn(back=True)
