@@ -18,6 +18,7 @@ from tarsus.control.pose.slope_stance import SlopeStance
 from tarsus.control.readings import SensorReadings
 from tarsus.control.robot_controller import RobotController
 from tarsus.control.sensing.body_condition import BodyCondition
+from tarsus.control.terrain.body_motion import BodyMotion
 from tarsus.control.terrain.reach import Reach
 from tarsus.control.terrain.roughness import GroundAdaptation
 from tarsus.control.walk_controller import WalkController
@@ -78,6 +79,20 @@ def test_the_body_follows_the_share_of_a_slope_that_the_legs_do_not_reach():
         rates = posture.rates(plane, (0.0, pitch), BodyMove(0j, [(0.2 + 0j, 0.1), (-0.2 + 0j, 0.1)]))
         pitch -= rates.turn[1] * 0.01
     assert pitch == pytest.approx(-0.3 * slope, abs=0.005)
+
+
+@pytest.mark.parametrize(
+    ("levelling", "share", "said"),
+    [
+        *(("level", 1.0, False), ("level", 0.99, True), ("between", 0.51, False), ("between", 0.49, True)),
+        *(("follow", 0.0, False), (None, 0.0, False)),
+    ],
+)
+def test_an_end_of_the_reach_is_said_only_where_the_legs_reach_less_than_is_to_be_levelled(levelling, share, said):
+    body = BodyMotion(preset("strider"), levelling=levelling, adaptation=GroundAdaptation())
+    level, reach = ([0.0] * 6, [0.0] * 6), ([-0.1] * 6, [0.1] * 6)
+    body._posture.fit_to_reach([level], (0.0, 0.0), 0.02, reach=reach, height=0.1, share=share)
+    assert [each.kind for each in body.limitations] == [LimitationKind.ATTITUDE] * said
 
 
 def test_a_standing_body_rests_until_it_is_far_from_where_it_should_be():

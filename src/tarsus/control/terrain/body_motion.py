@@ -140,9 +140,8 @@ class BodyMotion:
     @property
     def limitations(self) -> list[Limitation]:
         """What the ground does not allow."""
-        cause = "end of the legs' reach on this ground"
-        found = [Limitation(kind=LimitationKind.ATTITUDE, cause=cause)] if self._posture.given_way > 0.0 else []
-        return found + self.odometry.limitations
+        short = [Limitation(kind=LimitationKind.ATTITUDE, cause="end of the legs' reach on this ground")]
+        return (short if self._posture.given_way > 1 - self._posture.kept else []) + self.odometry.limitations
 
     def step(self, tick: TickState, footing: Footing, transitions: TransitionExecutor, *, pace: float) -> None:
         """Look at plane, reach and lost way, and decide how the body is to move.
