@@ -413,6 +413,16 @@ def test_on_rough_ground_cycles_get_longer_feet_closer_and_fast_walks_slower(spe
     )
 
 
+def test_a_robot_that_is_to_stand_is_not_said_to_be_slowed_down_by_rough_ground():
+    controller, found = WalkController(STRIDER), []
+    for _ in range(150):
+        controller._walk.ground.body.roughness.landed(0.048)
+        controller.step((0.0, 0.0, 0.0), 0.02, SensorReadings(contacts=controller.contacts, attitude=(0.0, 0.0)))
+        found += controller.limitations
+    assert controller._walk.ground.body.roughness.speed < 0.9
+    assert found == []
+
+
 # A walk with 0.1 m/s, looked at each 10 ms.
 FORWARD = CommandedMotion(velocity=0.1 + 0j, moved=0.001 + 0j, turned=0.0, yaw=0.0)
 

@@ -52,7 +52,7 @@ class WorkspaceLimiter:
         if key != self._key:
             self._key, (fraction, cause) = key, self._largest(request.twist, frequency, most)
             walks = any(request.twist)
-            fastest, longest = (top_speed(transitions, request.twist), longest) if walks else (1.0, 1.0)
+            fastest, longest = (top_speed(transitions, request.twist), longest) if walks else (math.inf, 1.0)
             # Cycles get no longer than the strokes at this speed allow.
             transitions.lengthened = min(max(_SPARE * max(fastest, 1 / speed), 1.0), longest)
             if speed < 1 and speed * fastest < fraction:
