@@ -439,6 +439,28 @@ def test_a_leg_taken_out_on_a_slope_leaves_the_body_level(name, leg):
     assert max(tilts[245:]) < math.radians(9.0)
 
 
+def test_a_foot_target_of_a_failed_leg_is_said_not_to_be_met_until_it_is_taken_back():
+    controller = tarsus.RobotController(STRIDER)
+    controller.leg_failures.failed.update({1: 2, 4: 1})
+
+    def said(ticks, **command):
+        for _ in range(ticks):
+            output = controller.step(tarsus.Command(**command), DT)
+        return [(each.leg, each.joint, each.granted) for each in output.limitations if each.kind == "foot_target"]
+
+    lost = ("middle left", "tibia", 0.0)
+    assert said(2, foot_targets={1: (0.0, 0.3, 0.05), 4: None}) == [lost]
+    # While the legs move to their new stance, and after that.
+    assert said(200) == [lost]
+    text = [each.text() for each in controller.output.limitations]
+    cause = "middle left tibia: the joint has failed: the robot walks on without this leg"
+    assert text.count(f"foot_target: 0 % of the command; {cause}") == text.count(f"gait: {cause}") == 1
+    assert said(2, foot_targets={1: None}) == []
+    assert said(1, foot_velocities={4: (0.0, 0.0, 0.1)}) == [("middle right", "femur", 0.0)]
+    assert said(1) == []
+    assert len(controller.output.limitations) == 2
+
+
 @pytest.mark.parametrize(("failed", "out"), [({1: 2}, {1}), ({1: 2, 3: 1}, {1, 3}), ({3: 1}, {3}), ({}, {1})])
 def test_a_robot_that_sat_down_without_a_leg_stands_up_the_same_way_where_no_other_is_found(monkeypatch, failed, out):
     def refuse(*_args, **_more):

@@ -5,6 +5,7 @@ from __future__ import annotations
 import dataclasses
 from collections.abc import Iterable, Mapping
 from contextlib import suppress
+from itertools import compress
 from typing import TYPE_CHECKING, Any, TypeVar
 
 import numpy as np
@@ -109,6 +110,10 @@ class ReducedWalking(Walking):
 
     def step(self, command: Command, dt: float, readings: SensorReadings | None) -> None:
         """Advance by one tick; until the legs are in their new stance, commands and readings are ignored."""
+        points = {**(command.foot_targets or {}), **(command.foot_velocities or {})}
+        gait, dropped = self._limitations[: len(self.failed)], [points.get(leg) is not None for leg in self.failed]
+        not_met: dict[str, Any] = {"kind": LimitationKind.FOOT_TARGET, "asked": 1.0, "granted": 0.0}
+        self._limitations = gait + tuple(dataclasses.replace(why, **not_met) for why in compress(gait, dropped))
         if self._time < self._duration:
             self._time += dt
             return
