@@ -1165,6 +1165,58 @@ def test_a_robot_that_is_picked_up_or_has_fallen_stops_and_goes_on_once_it_stand
     assert controller._walk.ground.condition.tilt == 0.0
 
 
+@pytest.mark.parametrize(
+    ("attitude", "degrees"), [((math.radians(179.0), 0.0), 179.0), ((1.6, 0.0), 91.67), ((2.0, math.pi), 65.41)]
+)
+@pytest.mark.parametrize("sensed", [True, False])
+def test_a_fall_that_is_too_fast_for_the_attitude_to_be_accepted_is_found(attitude, degrees, sensed):
+    controller = WalkController(STRIDER)
+
+    def walked(seconds, attitude=(0.0, 0.0)):
+        before, found = controller.place[0], []
+        for _ in range(round(seconds / 0.02)):
+            contacts = controller.feet[:, 2] <= 1e-4 if sensed else None
+            controller.step((0.1, 0.0, 0.0), 0.02, SensorReadings(contacts=contacts, attitude=attitude))
+            found.append([each.text() for each in controller.limitations])
+        return controller.place[0] - before, found
+
+    way, upright = walked(3.0)
+    assert way > 0.25
+    assert upright[-1] == []
+    _, falls = walked(1.0, attitude)
+    fallen = f"attitude: {degrees} deg instead of 0 deg, bound 45 deg; the robot has fallen".replace(".0 ", " ")
+    assert [fallen in why for why in falls].index(True) == pytest.approx(11, abs=2)
+    way, lies = walked(3.0, attitude)
+    assert way == pytest.approx(0.0, abs=1e-6)
+    assert {each for why in lies for each in why if "fallen" in each} == {fallen}
+    # Set upright, it goes on as before, and does not make up for the time that it lay.
+    walked(1.5)
+    way, upright = walked(3.0)
+    assert way == pytest.approx(0.3, rel=0.05)
+    assert upright[-1] == []
+
+
+@pytest.mark.parametrize("contacts", [None, (True,) * 6])
+def test_a_robot_that_lies_on_its_side_from_the_first_reading_on_does_not_walk(contacts):
+    controller, way = WalkController(STRIDER), []
+    for _ in range(100):
+        controller.step((0.1, 0.0, 0.0), 0.02, SensorReadings(contacts=contacts, attitude=(-1.57, 0.1)))
+        way.append(controller.place[0])
+    why = [each.text() for each in controller.limitations]
+    assert "attitude: 89.95 deg instead of 0 deg, bound 45 deg; the robot has fallen" in why
+    assert way[50] == way[-1] < 0.03
+
+
+@pytest.mark.parametrize("lasts", [1, 4])
+def test_attitudes_beyond_what_is_accepted_that_do_not_last_are_no_fall(lasts):
+    controller = WalkController(STRIDER)
+    for tick in range(200):
+        attitude = (3.1, 0.0) if tick % 10 < lasts else (0.0, 0.0)
+        controller.step((0.1, 0.0, 0.0), 0.02, SensorReadings(contacts=controller.contacts, attitude=attitude))
+        assert not [each for each in controller.limitations if "fallen" in each.cause]
+    assert controller.place[0] > 0.3
+
+
 def test_a_foot_whose_swing_has_waited_looks_for_the_ground_as_long_as_any_other():
     contacts = FootContacts(2)
     for _ in range(300):

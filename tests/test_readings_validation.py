@@ -77,6 +77,7 @@ def test_plausible_readings_pass_as_plain_numbers():
         attitude=(0.1, -0.2),
         forces=tuple((0.0, 0.0, float(i)) for i in range(6)),
         torques=((0.1, -0.5, 0.2),) * 6,
+        tilt=pytest.approx(math.acos(math.cos(0.1) * math.cos(0.2))),
     )
     assert found.rejected == ()
 
@@ -86,8 +87,9 @@ def test_lists_and_arrays_of_any_library_are_equivalent(make):
     forces = [[0.5, -0.25, 2.0]] * 6
     contacts = [1, 0, 1, 0, 1, 0]
     found = validated(contacts=make(contacts), attitude=make([0.5, 0.25]), forces=make(forces), torques=make(forces))
+    vectors = ((0.5, -0.25, 2.0),) * 6
     assert found == ValidReadings(
-        contacts=(True, False) * 3, attitude=(0.5, 0.25), forces=((0.5, -0.25, 2.0),) * 6, torques=found.forces
+        contacts=(True, False) * 3, attitude=(0.5, 0.25), forces=vectors, torques=vectors, tilt=found.tilt
     )
     for value in (*found.contacts, *found.attitude, *found.forces[0]):
         assert type(value) in {bool, float}
@@ -182,6 +184,21 @@ def test_friction_may_pull_a_foot_down_on_the_side_of_an_obstacle(force, passes)
     forces = np.zeros((6, 3))
     forces[2] = WEIGHT * np.array(force)
     assert (not validated(forces=forces).rejected) is passes
+
+
+@pytest.mark.parametrize(
+    ("attitude", "tilt"),
+    [
+        ((0.3, 0.4), math.acos(math.cos(0.3) * math.cos(0.4))),
+        *(((math.radians(179.0), 0.0), math.radians(179.0)), ((-1.6, 0.0), 1.6), ((math.pi, -2.0), math.pi - 2.0)),
+        *(((3.2, 0.0), None), ((0.0, -9.0), None), ((math.nan, 0.0), None), ((0.0, math.inf), None)),
+        *(("?", None), ((1.0, 2.0, 3.0), None), (Hostile(), None), (None, None)),
+    ],
+)
+def test_attitudes_that_are_rejected_tell_the_tilt_as_well(attitude, tilt):
+    found = validated(attitude=attitude).tilt
+    assert found == (None if tilt is None else pytest.approx(tilt))
+    assert validated(attitude=attitude, age=0.2).tilt is None
 
 
 def test_a_channel_with_every_leg_rejected_is_none():
@@ -394,7 +411,7 @@ def test_an_attitude_that_jumps_is_rejected_until_readings_agree():
     assert validated(validator, attitude=(0.0, 0.0)).attitude == (0.0, 0.0)
     assert validated(validator, attitude=(0.05, 0.0)).attitude == (0.05, 0.0)
     spike = validated(validator, attitude=(0.05, 0.5))
-    assert spike == ValidReadings(rejected=("attitude: changes faster than 343.8 deg/s",))
+    assert spike == ValidReadings(tilt=spike.tilt, rejected=("attitude: changes faster than 343.8 deg/s",))
     assert validated(validator, attitude=(0.05, 0.0)).rejected == spike.rejected
     # The readings may agree on another attitude than before the jump.
     assert validated(validator, attitude=(0.4, 0.4)).rejected == spike.rejected

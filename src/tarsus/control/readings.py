@@ -93,6 +93,8 @@ class ValidReadings(NamedTuple):
         Angular velocity of B in the world, components along B's axes [rad/s].
     ground : GroundHeights or None
         Heights of the ground around the body.
+    tilt : float or None
+        Angle of the body against gravity by the measured attitude, even if that is rejected [rad].
     joint_age : float
         Time since the measurement of the joint angles, of the oldest where their ages differ [s].
     joint_ages : tuple of (three floats), or None
@@ -118,6 +120,7 @@ class ValidReadings(NamedTuple):
     attitude: RollPitch | None = None
     angular_rates: Vector | None = None
     ground: GroundHeights | None = None
+    tilt: float | None = None
     joint_age: float = 0.0
     joint_ages: tuple[Vector, ...] | None = None
     ground_age: float = 0.0

@@ -6,7 +6,6 @@ import math
 from collections.abc import Sequence
 
 from tarsus.control.limitation import Limitation, LimitationKind
-from tarsus.control.readings import RollPitch
 
 __all__ = ["BodyCondition"]
 
@@ -26,7 +25,7 @@ class BodyCondition:
     tilt : float
         Angle of the body against gravity, as measured last [rad].
     fallen, carried : bool
-        Whether the robot has fallen onto its side or back; whether it is in the air, or is being put down.
+        Whether the robot has fallen onto its side or back; whether it has, is in the air, or is being put down.
     """
 
     def __init__(self) -> None:
@@ -38,27 +37,26 @@ class BodyCondition:
         """Whether the robot is held in the air, where its feet do not search for the ground."""
         return self.airborne > _IN_AIR
 
-    def step(self, touching: Sequence[bool], attitude: RollPitch | None, dt: float, *, held: bool) -> None:
-        """Take in the contacts and the attitude of a tick.
+    def step(self, touching: Sequence[bool], tilt: float | None, dt: float, *, held: bool) -> None:
+        """Take in the contacts and the tilt of a tick.
 
         Parameters
         ----------
         touching : sequence of bool
             Which feet touch the ground; True where nothing is known.
-        attitude : (roll, pitch) or None
-            Measured attitude [rad]; None where it is not measured, or rejected as beyond 60 degrees.
+        tilt : float or None
+            Angle of the body against gravity [rad]; None where it is not measured.
         dt, held : float, bool
             Time since the last tick [s]; whether the feet in contact hold the robot.
         """
         self.airborne = 0.0 if any(touching) else self.airborne + dt
         self._held = self._held + dt if held else 0.0
-        self.carried = self.in_air or (self.carried and self._held < _PUT_DOWN)
-        if attitude is not None:
-            self.tilt = math.acos(math.cos(attitude[0]) * math.cos(attitude[1]))
-        changes = self.tilt < _UPRIGHT if self.fallen else self.tilt > _FALLEN
-        self._time = self._time + dt if changes else 0.0
+        if tilt is not None:
+            self.tilt, changes = tilt, tilt < _UPRIGHT if self.fallen else tilt > _FALLEN
+            self._time = self._time + dt if changes else 0.0
         if self._time > _LASTS:
             self.fallen, self._time = not self.fallen, 0.0
+        self.carried = self.in_air or self.fallen or (self.carried and self._held < _PUT_DOWN)
 
     @property
     def limitations(self) -> list[Limitation]:

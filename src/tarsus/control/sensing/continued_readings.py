@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from tarsus.control.readings import CHANNELS, SensorReadings, ValidReadings, Vector
+from tarsus.control.readings import SensorReadings, ValidReadings, Vector
 from tarsus.control.sensing.validation import ReadingsValidator
 from tarsus.robot.robot import Robot
 
@@ -20,7 +20,7 @@ __all__ = ["ContinuedReadings"]
 # How long the last reading stands in for missing ones [s].
 _HELD = 0.1
 # Channels that are continued, of the legs and of the body. Contacts are not: their estimator copes with missing ones.
-_OF_LEGS, _OF_BODY = ("joint_angles", "forces", "torques"), ("attitude", "angular_rates")
+_OF_LEGS, _OF_BODY = ("joint_angles", "forces", "torques"), ("attitude", "angular_rates", "tilt")
 # How long commands are kept [s]: for as long as readings are held, plus the longest lag of joints.
 _KEPT = 0.35
 # Joint angles count as new up to so many ticks above the usual age of new ones; how fast that age may rise [s/s].
@@ -73,8 +73,8 @@ class ContinuedReadings:
         while self._now - self._commands[0][0] > _KEPT:
             self._commands.popleft()
         valid = self.valid = self._validator.validate(readings, dt)
-        channels = zip(valid[: len(CHANNELS)], self._last[: len(CHANNELS)], strict=True)
-        if valid.rejected or any((now is None) is not (last is None) for now, last in channels):
+        values = zip(valid, self._last, strict=True)
+        if valid.rejected or any((now is None) is not (last is None) for now, last in values):
             valid = self._held(valid, dt)
         else:
             self._missing.clear()

@@ -22,7 +22,7 @@ _MOST_AGE, _MOST_TICKS = 0.1, 4.0
 _Ages: TypeAlias = tuple[Vector, ...] | None
 
 _NO_READINGS, _NONE = ValidReadings(), frozenset[int]()
-_VALUES, _JOINT_ANGLES = attrgetter(*CHANNELS), CHANNELS.index("joint_angles")
+_VALUES, _JOINT_ANGLES, _ATTITUDE = attrgetter(*CHANNELS), CHANNELS.index("joint_angles"), CHANNELS.index("attitude")
 # What is wrong with an age that is no number; the rest for a channel whose joints may have an age each.
 _BAD_AGE, _NOR_EACH = "age is not a number >= 0 s", ", nor one for each joint"
 
@@ -76,6 +76,7 @@ class ReadingsValidator:
             value if value is None else channel.read(value, rejected)
             for channel, value in zip(self._channels, values, strict=True)
         ]
+        found.append(_tilt(values[_ATTITUDE]))
         if not ages:
             # An empty mapping, which is not a number, means age 0.
             age = max(0.0, as_number(readings.age))
@@ -101,6 +102,12 @@ class ReadingsValidator:
 def rejections(valid: ValidReadings) -> list[Limitation]:
     """Return the limitations that name rejected readings."""
     return [Limitation(kind=LimitationKind.READINGS, cause=reason) for reason in valid.rejected]
+
+
+def _tilt(attitude: Any) -> float | None:
+    """Return the angle against gravity of a body with this roll and pitch [rad]; None for what no body can have."""
+    roll, pitch = map(as_number, as_items(attitude, (2,)) or (math.nan, math.nan))
+    return math.acos(math.cos(roll) * math.cos(pitch)) if abs(roll) <= math.pi >= abs(pitch) else None
 
 
 def _channel_ages(readings: SensorReadings, most: float, *, legs: int) -> tuple[str, dict[str, float], _Ages]:

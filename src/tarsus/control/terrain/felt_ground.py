@@ -111,7 +111,8 @@ class FeltGround:
         stopped = self._swings.step([coxa for coxa, _, _ in angles], valid, dt, down if valid.torques else lands)
         measured = self._loads.contacts(valid, angles, state, dt)
         if not state.felt:
-            if measured is None and valid.attitude is None:
+            self.condition.step([True], valid.tilt, dt, held=True)
+            if measured is None and valid.attitude is None and not self.condition.fallen:
                 return state
             heights = np.array(state.heights(float(state.posture.value[SWING_HEIGHT])))
             state = state._replace(ground_height=heights, felt=[FeltFoot()] * len(heights))
@@ -131,7 +132,7 @@ class FeltGround:
         moves = self.missing.moving(state.in_heading(state.foot).tolist()) if self.missing.places else ()
         lands = [on and not (self.condition.carried or leg in moves) for leg, on in enumerate(lands)]
         self.contacts.step(measured, down, dt, count=ticks, lands=lands, leaving=leaving, rests=rests)
-        self.condition.step([*map(self.contacts.touches, range(len(down)))], valid.attitude, dt, held=self.support.held)
+        self.condition.step([*map(self.contacts.touches, range(len(down)))], valid.tilt, dt, held=self.support.held)
         centre = partial(self._middle, state)
         self.offsets = self._loads.offsets(valid, angles, state, dt, out=self._given[0], centre=centre)
         if self.missing.stranded and all(down):
@@ -282,9 +283,8 @@ class FeltGround:
         waits = any((self.body.slope.holds, condition.carried, missing.refuses, missing.tips))
         legs = [leg for leg, on in enumerate(footing.down) if on and not (leg in missing.places or (due and due[leg]))]
         stays = (self.support.holds(legs, footing, anew=not self.body.since) and not (lifts and waits)) or due is None
-        stays, lifts = stays and not condition.fallen, lifts and not condition.fallen
         rests = all(on or leg in self._given[0] for leg, on in enumerate(footing.down))
-        unheld = lifts and rests and not (stays or waits or missing.places or condition.fallen)
+        unheld = lifts and rests and not (stays or waits or missing.places)
         self.support.shift_over(legs if unheld else [], footing, dt, scale=self.body.reach.scale)
         self.support.step(stays=stays, lifts=lifts, dt=dt, swing_time=swing_time, most=missing.pace)
 
