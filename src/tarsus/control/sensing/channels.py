@@ -6,13 +6,12 @@ import math
 import sys
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
-from operator import le
 from typing import TYPE_CHECKING, Any, TypeAlias, TypeVar
 
 import numpy as np
 
 from tarsus.control.readings import RollPitch, Vector
-from tarsus.control.sensing.plain_values import as_bool, as_items, as_number, as_vector
+from tarsus.control.sensing.plain_values import as_bool, as_items, as_number, as_vector, between
 from tarsus.gait.ground_heights import GroundHeights
 from tarsus.kinematics.mass import known_weight
 from tarsus.robot.joint_limits import joint_limits
@@ -109,6 +108,8 @@ class _AttitudeChannel(_Channel):
 
     def __init__(self) -> None:
         super().__init__(["attitude"])
+        # Angle against gravity by the last reading, accepted or not; None for what no body can have [rad].
+        self.tilt: float | None = None
         # The last reading within the greatest tilt, accepted or not, and when it was read.
         self._last: RollPitch | None = None
         self._read = 0.0
@@ -119,10 +120,12 @@ class _AttitudeChannel(_Channel):
 
     def _checked(self, value: Any) -> RollPitch | str:
         """Return a reading, or what is wrong with it; remember it if it is within the greatest tilt."""
-        parts = as_items(value, (2,))
+        parts, self.tilt = as_items(value, (2,)), None
         if parts is None:
             return "expected roll and pitch"
         roll, pitch = as_number(parts[0]), as_number(parts[1])
+        if abs(roll) <= math.pi >= abs(pitch):
+            self.tilt = math.acos(math.cos(roll) * math.cos(pitch))
         if not (-_MOST_TILT <= roll <= _MOST_TILT and -_MOST_TILT <= pitch <= _MOST_TILT):
             return _BEYOND if roll - roll == 0.0 == pitch - pitch else "not finite numbers"
         before, change = self._last, _MOST_TURN * (self.now - self._read) + _NOISE
@@ -232,7 +235,7 @@ class _VectorChannel(_LegChannel):
         self._beyond, self._accept_z = beyond, accept_z
 
     def _read_usual(self, numbers: list[float]) -> tuple[Vector, ...] | None:
-        plausible = _between(self._low, numbers, self._high)
+        plausible = between(self._low, numbers, self._high)
         return tuple(zip(numbers[::3], numbers[1::3], numbers[2::3], strict=True)) if plausible else None
 
     def _read_leg(self, leg: int, value: Any) -> Vector | str:
@@ -244,7 +247,7 @@ class _VectorChannel(_LegChannel):
 
     def _is_plausible(self, leg: int, vector: Vector) -> bool:
         of_leg = slice(3 * leg, 3 * leg + 3)
-        return _between(self._low[of_leg], vector, self._high[of_leg])
+        return between(self._low[of_leg], vector, self._high[of_leg])
 
 
 class _ForceChannel(_VectorChannel):
@@ -290,8 +293,3 @@ class _JointAngleChannel(_VectorChannel):
             return "change faster than the servos turn"
         self._last[of_leg], self._read[leg] = angles, self.now
         return angles
-
-
-def _between(low: Sequence[float], numbers: Sequence[float], high: Sequence[float]) -> bool:
-    """Return whether each number is within its bounds; NaN is not."""
-    return all(map(le, low, numbers)) and all(map(le, numbers, high))

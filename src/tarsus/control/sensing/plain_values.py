@@ -8,11 +8,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from operator import le
 from typing import Any
 
 import numpy as np
 
-__all__ = ["as_bool", "as_items", "as_number", "as_vector"]
+__all__ = ["as_bool", "as_items", "as_number", "as_vector", "between"]
 
 
 def as_number(value: Any) -> float:
@@ -61,3 +62,8 @@ def as_vector(value: Any) -> tuple[float, float, float]:
     parts = value if type(value) is list and len(value) == 3 else as_items(value, (3,))
     x, y, z = map(as_number, parts or (None, None, None))
     return x, y, z
+
+
+def between(low: Sequence[float], numbers: Sequence[float], high: Sequence[float]) -> bool:
+    """Return whether each number is within its bounds; NaN is not."""
+    return all(map(le, low, numbers)) and all(map(le, numbers, high))

@@ -76,7 +76,8 @@ class ReadingsValidator:
             value if value is None else channel.read(value, rejected)
             for channel, value in zip(self._channels, values, strict=True)
         ]
-        found.append(_tilt(values[_ATTITUDE]))
+        attitude, _ = self._timed
+        found.append(None if values[_ATTITUDE] is None else attitude.tilt)
         if not ages:
             # An empty mapping, which is not a number, means age 0.
             age = max(0.0, as_number(readings.age))
@@ -102,12 +103,6 @@ class ReadingsValidator:
 def rejections(valid: ValidReadings) -> list[Limitation]:
     """Return the limitations that name rejected readings."""
     return [Limitation(kind=LimitationKind.READINGS, cause=reason) for reason in valid.rejected]
-
-
-def _tilt(attitude: Any) -> float | None:
-    """Return the angle against gravity of a body with this roll and pitch [rad]; None for what no body can have."""
-    roll, pitch = map(as_number, as_items(attitude, (2,)) or (math.nan, math.nan))
-    return math.acos(math.cos(roll) * math.cos(pitch)) if abs(roll) <= math.pi >= abs(pitch) else None
 
 
 def _channel_ages(readings: SensorReadings, most: float, *, legs: int) -> tuple[str, dict[str, float], _Ages]:
