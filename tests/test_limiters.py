@@ -153,6 +153,26 @@ def test_a_transition_that_waits_slows_the_walk_down_and_is_reported_when_it_las
     assert limiter.limit(request(controller, (0.1, 0.0, 0.0)), TwistGrant()) == TwistGrant()
 
 
+def test_a_transition_that_waits_slows_down_a_walk_that_is_slow_for_another_reason():
+    controller = walking()
+    limiter = PendingTransitionLimiter(Waiting())
+    for _ in range(200):
+        grant = limiter.limit(request(controller, (0.1, 0.0, 0.0)), TwistGrant(1e-4))
+    assert grant.fraction == grant.limitations[0].granted == pytest.approx(1e-4 * np.exp(-4.0))
+
+
+@pytest.mark.parametrize(("name", "body"), [("phantomx", (0, 0, 0, 0, 0.3, 0)), ("strider", (0, 0, 0, 1.0, 0, 0))])
+def test_a_walk_leaves_a_pose_at_the_end_of_the_legs_reach_within_seconds(name, body):
+    controller = WalkController(load_robot(name))
+    twist = (0.5 * controller.top_speed((1, 0, 0)), 0.0, 0.0)
+    for command in (Command(twist=twist, body=body), Command(twist=twist, body=(0.0,) * 6)):
+        # Held at 0.01 % of its command, the walk began to change its pose only after 8 s.
+        for _ in range(round(6.0 / DT)):
+            controller.step(command, DT)
+    assert controller.body.rpy == pytest.approx((0.0, 0.0, 0.0), abs=1e-3)
+    assert controller.limitations == ()
+
+
 def test_the_walk_slows_down_for_another_gait_no_more_than_needed():
     controller = walking((0.2, 0.0, 0.0), Command(twist=(0.2, 0.0, 0.0), gait="wave"), seconds=6.0)
     assert controller.gait.name == "wave"

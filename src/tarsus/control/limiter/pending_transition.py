@@ -38,7 +38,9 @@ class PendingTransitionLimiter:
         planned = self._transitions.scheduler.planned
         stands = planned is not None and self._transitions.timing.stands_before(planned.parameters.gait)
         self._fraction *= 0.0 if stands else math.exp(-request.dt / _TIME_CONSTANT)
+        # The twist approaches what the stances allow from above; the transition begins only below that.
+        fraction = self._fraction * grant.fraction
         if self._fraction < _REPORTED and any(request.twist):
-            slow = Limitation(kind=LimitationKind.TWIST, cause=_CAUSE, asked=1.0, granted=self._fraction)
-            return grant.at_most(self._fraction, slow)
-        return grant.at_most(self._fraction)
+            slow = Limitation(kind=LimitationKind.TWIST, cause=_CAUSE, asked=1.0, granted=fraction)
+            return grant.at_most(fraction, slow)
+        return grant.at_most(fraction)
