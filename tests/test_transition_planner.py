@@ -182,6 +182,48 @@ def test_a_robot_that_would_tip_over_is_refused():
     assert found == TIPPING
 
 
+def followed(name, *poses):
+    """What is planned last on the way through poses, each as far as it is feasible."""
+    setup, now = setup_of(name), start(name)
+    for body in poses:
+        for _ in range(8):
+            found = planned(setup, parameters_of(setup, body=body), now.posture, now.rest)
+            assert isinstance(found, StanceTransition)
+            assert reached(setup, found.posture, found.rest)
+            now = found
+            if now.complete:
+                break
+        assert now.complete
+    return now
+
+
+@pytest.mark.parametrize("name", ["strider", "phantomx", "makeyourpet"])
+def test_a_pose_is_met_as_far_from_another_one_at_the_end_of_reach_as_from_a_level_body(name):
+    ahead = (0.3, 0.0, 0.0, 0.0, 0.0, 0.0)
+    directly = followed(name, ahead)
+    found = followed(name, (0, 0, 0, 1.0, 0, 0), (0, 0, 0, 0, 0.8, 0), ahead)
+    np.testing.assert_allclose(found.posture, directly.posture, atol=1e-3)
+    (limitation,) = found.limitations
+    assert limitation.kind is LimitationKind.BODY
+    assert limitation.granted == pytest.approx(directly.limitations[0].granted, abs=0.01)
+
+
+def test_a_body_that_cannot_go_straight_to_a_pose_goes_level_first():
+    setup, tilted = setup_of("strider"), followed("strider", (0, 0, 0, 0, 0.8, 0))
+    ahead = parameters_of(setup, body=(0.3, 0.0, 0.0, 0.0, 0.0, 0.0))
+    found = planned(setup, ahead, tilted.posture, tilted.rest)
+    np.testing.assert_allclose(found.posture, start("strider").posture, atol=1e-9)
+    assert not found.complete
+    # What is not feasible is reported with the transition to it.
+    assert found.limitations == ()
+
+
+def test_a_body_at_the_end_of_reach_stays_there_for_a_little_more():
+    setup, now = setup_of("strider"), followed("strider", (0, 0, 0, 1.0, 0, 0))
+    found = planned(setup, parameters_of(setup, body=(0, 0, 0, 1.1, 0, 0)), now.posture, now.rest)
+    assert isinstance(found, Cause) or found.posture == pytest.approx(now.posture, abs=1e-3)
+
+
 def test_a_command_limited_by_balance_is_met_in_part_and_reported():
     setup, first = setup_of("mithi"), start("mithi")
     forward = parameters_of(setup, body=(0.3, 0.0, 0.0, 0.0, 0.0, 0.0))

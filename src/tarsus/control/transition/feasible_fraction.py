@@ -1,4 +1,4 @@
-"""How much of the straight path from one stance to another is feasible, and what limits it."""
+"""How much of the straight path from one stance to another is feasible, what limits it, and what comes closer."""
 
 from __future__ import annotations
 
@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from tarsus.control.limitation import Cause
-from tarsus.control.transition.stance_transition import StanceTarget
+from tarsus.control.limitation import Cause, LimitationKind
+from tarsus.control.transition.stance_transition import StanceTarget, WalkParameters
 from tarsus.control.workspace.foot_workspace import reach_cause, rest_margin
 from tarsus.gait.stance.stability import StabilityCheck
 from tarsus.gait.stance.stance_geometry import SWING_HEIGHT, StanceGeometry, joint_margin, rotation_rows
@@ -20,7 +20,7 @@ from tarsus.robot.robot import Robot
 if TYPE_CHECKING:
     from jaxtyping import Float
 
-__all__ = ["balanced_fraction", "first_increment", "reachable_fraction"]
+__all__ = ["balanced_fraction", "destination", "first_increment", "reachable_fraction"]
 
 _TOO_LOW = Cause("the body would be below the ground")
 # Number of samples of the whole path; how often the interval that fails is then halved, down to 1/2048 of the path.
@@ -29,8 +29,8 @@ _SAMPLES, _HALVINGS = 16, 7
 _PER_TICK = 2
 # Farthest that the rest footholds move in one transition [m]; fractions of the feasible path that are tried for it.
 _LONGEST_STEP, _SHORTER = 0.03, np.append(np.arange(16, 0, -1) / 16, (1 / 32, 1 / 64))
-# Rest footholds closer than this are the same [m].
-_SAME = 1e-9
+# Rest footholds closer than this are the same [m]; least additional fraction of a body pose to go elsewhere for.
+_SAME, _MORE = 1e-9, 1e-3
 # Additional stability margin, as a fraction of the greatest distance between neighbouring feet.
 _STEP_MARGIN = 0.03
 
@@ -72,6 +72,47 @@ def reachable_fraction(robot: Robot, start: StanceTarget, end: StanceTarget) -> 
     yield
     beyond = start.towards(end, infeasible)
     return feasible, _TOO_LOW if _depth(robot, beyond) > deepest else reach_cause(robot, beyond.stand)
+
+
+def destination(
+    robot: Robot, start: StanceTarget, end: StanceTarget, parameters: WalkParameters
+) -> Incremental[tuple[StanceTarget, float, Cause | None]]:
+    """Find where to go for a stance: towards it, or to where a level body could go if that meets more of the body pose.
+
+    Parameters
+    ----------
+    robot, start, end, parameters : Robot, StanceTarget, StanceTarget, WalkParameters
+        A single robot; the present stance; the one that is commanded, and by which parameters.
+
+    Returns
+    -------
+    goal : StanceTarget
+        Where to go: `end`, a stance on the path to it from a level body, or the level body, from which it goes on.
+    fraction : float
+        The fraction of the straight path to it that is feasible.
+    cause : Cause or None
+        What limits how far it goes; None for the whole way to `end`, and for the way to the level body.
+    """
+    fraction, cause = yield from reachable_fraction(robot, start, end)
+    if cause is None or not any(parameters.body):
+        return end, fraction, cause
+    yield
+    straight = start.towards(end, fraction).posture
+    missing = parameters.shortfalls(straight, cause, stance_width=parameters.stance_width)
+    met = min((each.granted for each in missing if each.kind is LimitationKind.BODY), default=1.0)
+    level = end._replace(posture=end.posture - np.array([*parameters.body, 0.0]))
+    part, limit = yield from reachable_fraction(robot, level, end)
+    if part - met < _MORE:
+        return end, fraction, cause
+    yield
+    goal = level.towards(end, part)
+    whole, _ = yield from reachable_fraction(robot, start, goal)
+    # Between two stances at the end of the legs' reach, there may be less room.
+    if whole == 1 and (rest_margin(robot, start.towards(goal, 0.5).stand) >= 0).all():
+        return goal, whole, limit
+    yield
+    back, _ = yield from reachable_fraction(robot, start, level)
+    return (level, back, None) if back > 0 else (end, fraction, cause)
 
 
 def balanced_fraction(

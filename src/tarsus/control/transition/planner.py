@@ -8,7 +8,7 @@ import numpy as np
 
 from tarsus.arrays import require_float
 from tarsus.control.limitation import Cause, Limitation, LimitationKind
-from tarsus.control.transition.feasible_fraction import balanced_fraction, first_increment, reachable_fraction
+from tarsus.control.transition.feasible_fraction import balanced_fraction, destination, first_increment
 from tarsus.control.transition.stance_transition import StanceTarget, StanceTransition, WalkParameters, target_stance
 from tarsus.control.workspace.cycle_time import CycleTiming, cycle_timing
 from tarsus.control.workspace.foot_workspace import reach_cause
@@ -117,12 +117,13 @@ class TransitionPlanner:
         if end is None:
             return _UNREACHABLE
         yield
-        reachable, cause = 1.0, None
+        asked, reachable, cause = end, 1.0, None
         if present is not end:
-            reachable, cause = yield from reachable_fraction(robot, present, end)
+            end, reachable, cause = yield from destination(robot, present, asked, parameters)
             if cause is not None and reachable == 0:
                 return cause
             yield
+        leads_there = end is asked or cause is not None
         fraction = first_increment(robot, present, end, reachable)
         if np.abs(end.rest - present.rest).max() > _SAME:
             yield
@@ -145,10 +146,11 @@ class TransitionPlanner:
             goal = present.towards(end, fraction)
             limits = yield from self._limits(parameters, goal)
         reached = present.towards(end, reachable)
-        shortfalls = [] if end is present else self._shortfalls(parameters, end, reached, cause or _UNREACHABLE)
+        ends = leads_there and end is not present
+        shortfalls = self._shortfalls(parameters, asked, reached, cause or _UNREACHABLE) if ends else []
         return replace(
             found,
-            complete=fraction == reachable and bool((found.rest == goal.rest).all()),
+            complete=leads_there and fraction == reachable and bool((found.rest == goal.rest).all()),
             keeps_posture=end is present,
             limitations=(*shortfalls, *_timing_limitations(parameters, found.cycle_timing)),
         )
