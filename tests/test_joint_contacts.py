@@ -183,3 +183,37 @@ def test_joint_angles_are_the_last_choice(servos):
     switched = valid._replace(contacts=(True,) * 6)
     assert loads.contacts(switched, angles, state, DT) == (True,) * 6
     assert not loads.estimated
+
+
+def test_expected_angles_are_those_of_their_times_whatever_the_ticks():
+    found = []
+    for ticks in ([DT] * 5, [0.0071, 0.0024, 0.0131, 0.0201, 0.0073], [0.05], [0.002] * 25):
+        joints = JointContacts(STRIDER)
+        for command in (0.1, 0.3, -0.2, 0.4):
+            for tick in ticks:
+                joints._follow([command] * 6, tick)
+        found.append([angle for angle, _ in joints._expected[-1]])
+        assert joints._since == pytest.approx(0.0, abs=1e-9)
+    assert abs(found[0][0]) > 0.01
+    np.testing.assert_allclose(found, np.broadcast_to(found[0], (4, 6)), atol=1e-12)
+
+
+@pytest.mark.no_cover
+def test_ticks_that_jitter_cause_no_collisions_where_contacts_are_estimated():
+    """With steps of the length of each tick, feet collided with level ground: it turned by 0.76 of its command."""
+    ahead, turning = (0.55 * tarsus.WalkController(STRIDER).top_speed(way) for way in ((1, 0, 0), (0, 0, 1)))
+    sensors = dataclasses.replace(SensorSuite.named("ideal"), contacts=None, forces=None)
+    plant, controller, rng = (
+        SimulatedPlant(STRIDER, sensors=sensors),
+        tarsus.RobotController(STRIDER),
+        np.random.default_rng(1),
+    )
+    plant.start(controller.output)
+    time = turned = before = 0.0
+    while time < 11.0:
+        dt = float(0.012 * rng.uniform(0.3, 1.7))
+        twist = (ahead, 0.0, 0.0) if time < 4.0 else (0.0, 0.0, turning)
+        controller.step(twist, dt, plant.step(controller.output, dt))
+        yaw, time = plant.state.body.rpy[2], time + dt
+        turned, before = turned + (yaw - before + np.pi) % (2 * np.pi) - np.pi, yaw
+    assert turned > 0.85 * turning * 7.0

@@ -35,8 +35,8 @@ _FAMILIAR, _STRANGE, _FASTER = 0.1, 0.15, 3.0
 # Least load of all legs for contacts to be known, over weight times length of femur and tibia; how long the load may be
 # less than half the learnt one [s]: after that, something else bears the robot, or what was learnt is wrong.
 _LEAST_LOAD, _UNBORNE = 0.1, 0.5
-# Step of the integration, and how long expected angles are kept [s].
-_STEP, _KEPT = 0.0025, 0.25
+# Step of the integration, and how long expected angles are kept [s]; share of a step that is rounding.
+_STEP, _KEPT, _ROUNDING = 0.0025, 0.25, 1e-6
 
 
 class JointContacts:
@@ -79,11 +79,14 @@ class JointContacts:
         near, far = STANDARD_GRAVITY * (mass[0] * com[0] + mass[1] * lengths), STANDARD_GRAVITY * mass[1] * com[1]
         self._moments = near.tolist(), far.tolist()
         stiffness = springs.stiffness[:, 1]
-        self._rates, self._stiffness = (stiffness / inertia, springs.damping[:, 1] / inertia), stiffness.tolist()
-        self._columns = springs.stall_torque[:, 1] / stiffness, springs.dead_band[:, 1], stiffness
-        # Length of a step [s]; of each femur: its constants; angle, speed and target; expectations after each step.
-        self._step, self._servos, self._state = 0.0, list[tuple[float, ...]](), list[tuple[float, float, float]]()
-        self._expected = deque[list[tuple[float, float]]]()
+        self._stiffness: list[float] = stiffness.tolist()
+        spring, damper = stiffness / inertia, springs.damping[:, 1] / inertia
+        kept = 1 / (1 + _STEP * damper + _STEP**2 * spring)
+        bounds = springs.stall_torque[:, 1] / stiffness, springs.dead_band[:, 1]
+        columns = (column.tolist() for column in (kept, _STEP * spring * kept, *bounds, stiffness))
+        # Of each femur: its constants; angle, speed and target; expectations after each step. Time since the last [s].
+        self._servos, self._state = list(zip(*columns, strict=True)), list[tuple[float, float, float]]()
+        self._expected, self._since = deque[list[tuple[float, float]]](), 0.0
         longest = float((lengths + np.asarray(robot.geometry.tibia)).max())
         self._least = _LEAST_LOAD * known_weight(robot) * longest
         self.lag, self._familiar, self._unborne = _LAG, False, 0.0
@@ -105,7 +108,7 @@ class JointContacts:
         """
         self._follow([femur for _, femur, _ in commanded], dt)
         legs = [leg for leg in valid.joint_angles or () if leg is not None]
-        late = (self.lag + valid.joint_age) / self._step
+        late = (self.lag + valid.joint_age + self._since) / _STEP
         recent = max(int(late), 0) + 1
         if recent >= len(self._expected) or len(legs) < len(self._stiffness):
             return None
@@ -119,7 +122,7 @@ class JointContacts:
         stands, phases = state.down.tolist(), state.swing_phase.tolist()
         free = [leg for leg, on in enumerate(stands) if not on and _CLEAR < phases[leg] < _DOWNWARD]
         if free:
-            self._learn(free, off, [(newer[leg] - older[leg]) / self._step for leg in free], dt)
+            self._learn(free, off, [(newer[leg] - older[leg]) / _STEP for leg in free], dt)
         load = sum(torque for torque, on in zip(off, stands, strict=True) if on)
         borne = load > self._load / 2
         self._load += borne * _MEAN_RATE * dt * (load - self._load)
@@ -159,13 +162,10 @@ class JointContacts:
 
     def _follow(self, commanded: list[float], dt: float) -> None:
         """Integrate the angles that the femurs of free legs have as they follow their commands for a tick."""
-        steps = max(round(dt / _STEP), 1)
-        step = dt / steps
-        if step != self._step:
-            spring, damper = self._rates
-            kept = 1 / (1 + step * damper + step**2 * spring)
-            columns = (kept, step * spring * kept, *self._columns)
-            self._step, self._servos = step, list(zip(*(column.tolist() for column in columns), strict=True))
+        # Steps of one length, whatever the ticks: expectations of different steps are compared by their number.
+        self._since += dt
+        steps = int(self._since / _STEP + _ROUNDING)
+        self._since -= steps * _STEP
         self._state = self._state or [(command, 0.0, command) for command in commanded]
         for _ in range(steps):
             moved, expected = list[tuple[float, float, float]](), list[tuple[float, float]]()
@@ -173,10 +173,10 @@ class JointContacts:
                 (angle, speed, target), (kept, gain, most, band, stiffness) = state, servo
                 target = min(max(target, command - band), command + band)
                 speed = kept * speed + gain * min(max(target - angle, -most), most)
-                angle += step * speed
+                angle += _STEP * speed
                 moved.append((angle, speed, target))
                 expected.append((angle, stiffness * (target - angle)))
             self._state = moved
             self._expected.append(expected)
-        while len(self._expected) * step > _KEPT + step / 2:
+        while len(self._expected) > _KEPT / _STEP:
             self._expected.popleft()
