@@ -537,6 +537,21 @@ def test_the_zero_offset_of_a_load_cell_is_learnt_while_its_foot_swings():
     assert loads.contacts(hit._replace(forces=((0.0, 0.0, 0.07 * weight), *[None] * 5)), angles, state, 0.04)[0]
 
 
+def test_compliant_feet_do_not_yield_to_the_zero_offsets_of_load_cells():
+    controller, found = WalkController(STRIDER), []
+    angles, state = controller.angles, controller._tick.gait
+    swings = state._replace(down=np.zeros(6, dtype=bool), swing_phase=np.full(6, 0.4))
+    for zeros in ([0.0] * 6, [2.0, -1.0, 1.5, 0.5, -2.0, 1.0]):
+        soft = FootLoads(STRIDER, Admittance(mass=1.0, damping=40.0, stiffness=400.0))
+        for forces, gait in (([0.0] * 6, swings), ([3.0, 5.0, 4.0, 2.0, 6.0, 1.0], state)):
+            cells = ValidReadings(forces=tuple((0.0, 0.0, sum(both)) for both in zip(forces, zeros, strict=True)))
+            for _ in range(100):
+                offsets = soft.offsets(cells, angles, gait, 0.04, out=[], centre=complex)
+        found.append(offsets)
+    assert np.abs(found[0]).max() > 0.001
+    assert found[1] == pytest.approx(found[0], abs=1e-5)
+
+
 def test_joint_angles_tell_of_contacts_once_switches_have_told_nothing_for_some_time(monkeypatch):
     loads, controller, told = FootLoads(STRIDER, None), WalkController(STRIDER), []
     angles, state = controller.angles, controller._tick.gait

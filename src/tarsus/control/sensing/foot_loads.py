@@ -106,11 +106,13 @@ class FootLoads:
         centre : callable
             Returns where the centre of mass is above the feet, x + iy in the heading frame [m].
         """
-        if valid.forces is not None:
-            self._learn_zeros(valid.forces, state, dt)
+        forces: Sequence[Vector | None] | None = valid.forces
+        if forces is not None:
+            self._learn_zeros(forces, state, dt)
+            cells = zip(forces, self._zeros, strict=True)
+            forces = [each and (each[0], each[1], each[2] - zero) for each, zero in cells]
         if self._filter is None:
             return None
-        forces: Sequence[Vector | None] | None = valid.forces
         if forces is None and valid.torques is not None:
             forces = self._torques.forces(commanded, valid.torques)
         if forces is None or not self._weight:
