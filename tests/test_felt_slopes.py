@@ -142,6 +142,14 @@ def test_feet_come_closer_to_the_height_of_the_middle_of_the_body_on_slopes(name
     assert not stance.shift.any()
 
 
+def test_feet_are_drawn_in_by_a_part_of_their_distance_at_most():
+    robot = preset("strider")
+    stance, feet = SlopeStance(robot), default_stance(robot)
+    rest, mounts = (at[:, 0] + 1j * at[:, 1] for at in (feet, robot.mount_position))
+    stance.step(FootPlane(), rest, 0.5, 0.04, walks=True)
+    np.testing.assert_allclose(rest + stance.shift - mounts, 0.6 * (rest - mounts))
+
+
 @pytest.mark.parametrize(
     ("slope", "period", "least", "most"), [(0.3, math.inf, 1.0, 1.0), (0.17, math.inf, 0.0, 0.0), (0.3, 1.0, 0.0, 0.0)]
 )
@@ -438,8 +446,9 @@ def test_less_friction_refuses_gentler_slopes():
     steepest = [SlopeLimit(friction).steepest for friction in (0.3, 0.6, 0.8, 1.0)]
     assert math.tan(steepest[0]) == pytest.approx(0.1)
     assert steepest == sorted(steepest)
-    with pytest.raises(InputError, match="friction is -1"):
-        GroundAdaptation(friction=-1.0)
+    for friction in (-1.0, 0.0):
+        with pytest.raises(InputError, match=f"friction is {friction:g}"):
+            GroundAdaptation(friction=friction)
 
 
 @pytest.mark.no_cover

@@ -21,6 +21,8 @@ _LEAST, _MOST = math.radians(6.0), math.radians(14.0)
 # How far legs turn about their coxa axes on a slope along the body [rad]; on one across the body, feet would come too
 # close together. How far feet are drawn in, over the length of femur and tibia.
 _TURNED, _DRAWN_IN = math.radians(30.0), 0.13
+# How far feet are drawn in on rough ground at most, over their distance from the coxa axes.
+_NEAREST = 0.4
 # Slopes between which feet come down ever more slowly [m/m], and the time over which slopes are averaged for that [s]:
 # feet push on after contact, throw the body up, and slide as it comes down. On rough ground, slopes do not last.
 _SLOW_FROM, _SLOW, _LASTS = 0.18, 0.27, 1.0
@@ -93,7 +95,9 @@ class SlopeStance:
             return
         out = rest - self._mounts
         angle = np.angle(out * uphill.conjugate())
-        nearer = drawn_in * (1 - share) + share * self._drawn_in * np.clip(-np.cos(angle) / _DOWNHILL, 0.0, 1.0)
+        nearer = np.minimum(drawn_in, _NEAREST * np.abs(out)) * (1 - share) + share * self._drawn_in * np.clip(
+            -np.cos(angle) / _DOWNHILL, 0.0, 1.0
+        )
         turned = share * _TURNED * math.cos(cmath.phase(uphill)) ** 2
         wanted = out * ((1 - nearer / np.abs(out)) * np.exp(1j * turned * np.sin(2 * angle)) - 1)
         least = self._scale * (_SMALLEST if walks else _STANDING) if share or drawn_in else 0.0

@@ -40,7 +40,8 @@ class GroundAdaptation:
     swing_height, body_height : float
         Greatest additions to the swing height and to the body height [m].
     drawn_in : float
-        How far feet may be drawn in, so that legs reach higher and lower [m].
+        How far feet may be drawn in, so that legs reach higher and lower, by 0.4 of their distance from the coxa axes
+        at most [m].
     cycle_time : float
         Greatest cycle time on rough ground and slopes, over that on even ground: fewer and longer steps slip less,
         but legs reach less high and low in them.
@@ -54,7 +55,8 @@ class GroundAdaptation:
     Raises
     ------
     InputError
-        If a value is negative or not finite, `cycle_time` or `catch_up` is below 1, or `speed` is 0 or above 1.
+        If a value is negative or not finite, `cycle_time` or `catch_up` is below 1, `speed` or `friction` is 0, or
+        `speed` is above 1.
     """
 
     swing_height: float = 0.05
@@ -67,8 +69,8 @@ class GroundAdaptation:
 
     def __post_init__(self) -> None:
         for name in (field.name for field in fields(self)):
-            what, value, is_speed = f"ground adaptation: {name}", getattr(self, name), name == "speed"
-            number = require_number(what, value, zero=not is_speed, most=1.0 if is_speed else math.inf)
+            what, most = f"ground adaptation: {name}", 1.0 if name == "speed" else math.inf
+            number = require_number(what, getattr(self, name), zero=name not in {"speed", "friction"}, most=most)
             object.__setattr__(self, name, number)
         for name in ("cycle_time", "catch_up"):
             if getattr(self, name) < 1:
