@@ -421,6 +421,8 @@ def test_a_walk_on_a_slope_that_no_leg_reaches_begins_level():
     walk.begin_on(20.0 + 0j)
     assert np.array_equal(walk.step((0.0, 0.0, 0.0), DT), before)
     assert walk.slope == 0j
+    with pytest.raises(InputError, match=r"before its first tick; this one is at 0.02 s"):
+        walk.begin_on(0.1 + 0j)
 
 
 @pytest.mark.no_cover

@@ -171,7 +171,14 @@ class WalkController:
         ----------
         slope : complex
             Rise of the ground along x and y of the body [m/m]; of what is beyond the legs' reach, only a part counts.
+
+        Raises
+        ------
+        InputError
+            After the first tick, as the joints would jump.
         """
+        if self.time:
+            raise InputError(f"begin_on is for a walk before its first tick; this one is at {self.time:.2f} s")
         self._tick = self._tick._replace(gait=self._walk.on_slope(slope))
 
     def joints_held(self) -> None:
