@@ -255,13 +255,13 @@ def test_support_slows_the_walk_down_only_where_feet_wait_for_long():
 @pytest.mark.parametrize("lifts", [True, False])
 def test_feet_in_the_air_are_put_down_once_the_robot_has_waited_for_long(lifts):
     support, waited = Support(), 0.0
-    while not support.hangs(refuses=False) and waited < 4.0:
+    while not support.puts_down(refuses=False) and waited < 4.0:
         support.step(stays=False, lifts=lifts, dt=0.02, swing_time=0.5)
         waited += 0.02
     assert 0.9 < waited < 1.1
-    assert support.hangs(refuses=True)
+    assert support.puts_down(refuses=True)
     support.step(stays=True, lifts=lifts, dt=0.02, swing_time=0.5)
-    assert not support.hangs(refuses=False)
+    assert not support.puts_down(refuses=False)
 
 
 @pytest.mark.no_cover

@@ -13,7 +13,7 @@ __all__ = ["SlopeLimit"]
 # Friction used up by legs that press against each other, over their load, under which they give way outwards; they use
 # up all but the second share of low friction.
 _PRELOAD, _LEFT = 0.32, 1 / 3
-# How far a slope must be below the steepest one to be walked again [rad]; half of that where that is less.
+# How far a slope must be below the steepest one to be walked again [rad]; half of the steepest one where that is less.
 _HYSTERESIS = math.radians(2.0)
 # Climbs and descents up to this height tell on which way a slope was met [m]. Motion at less than a share of its speed,
 # or than a speed [m/s], is neither up nor down.

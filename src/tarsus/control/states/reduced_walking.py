@@ -5,7 +5,6 @@ from __future__ import annotations
 import dataclasses
 from collections.abc import Iterable, Mapping
 from contextlib import suppress
-from itertools import compress
 from typing import TYPE_CHECKING, Any, TypeVar
 
 import numpy as np
@@ -94,7 +93,8 @@ class ReducedWalking(Walking):
         offsets = np.zeros(robot.legs)
         offsets[self._legs] = self.controller.gait.offsets
         self._gait = dataclasses.replace(self.controller.gait, offsets=tuple(offsets.tolist()))
-        self._limitations = tuple(
+        self._dropped = list[Limitation]()
+        self._left_out = tuple(
             Limitation(kind=LimitationKind.GAIT, cause=_CAUSE, leg=robot.leg_names[leg], joint=JOINTS[joint])
             for leg, joint in failed.items()
         )
@@ -111,9 +111,9 @@ class ReducedWalking(Walking):
     def step(self, command: Command, dt: float, readings: SensorReadings | None) -> None:
         """Advance by one tick; until the legs are in their new stance, commands and readings are ignored."""
         points = {**(command.foot_targets or {}), **(command.foot_velocities or {})}
-        gait, dropped = self._limitations[: len(self.failed)], [points.get(leg) is not None for leg in self.failed]
         not_met: dict[str, Any] = {"kind": LimitationKind.FOOT_TARGET, "asked": 1.0, "granted": 0.0}
-        self._limitations = gait + tuple(dataclasses.replace(why, **not_met) for why in compress(gait, dropped))
+        failed = zip(self.failed, self._left_out, strict=True)
+        self._dropped = [dataclasses.replace(why, **not_met) for leg, why in failed if points.get(leg) is not None]
         if self._time < self._duration:
             self._time += dt
             return
@@ -151,7 +151,7 @@ class ReducedWalking(Walking):
             angles=read_only(angles),
             feet=None,
             contacts=contacts,
-            limitations=(*self._limitations, *now.limitations),
+            limitations=(*self._left_out, *self._dropped, *now.limitations),
             # The feet slide on the way to their new stance.
             felt=now.felt or share < 1,
         )

@@ -139,7 +139,7 @@ class FeltGround:
             state = timing.with_first_lift(state, self.missing.stranded[0])
         pace = self.support.pace
         state = met_ground(state, self.body, self.missing, stopped=stopped, timing=timing, pace=pace)
-        if self.missing.tips or self.condition.carried or self.support.hangs(refuses=self.missing.refuses):
+        if self.missing.tips or self.condition.carried or self.support.puts_down(refuses=self.missing.refuses):
             state = put_down(state, timing=timing, pace=pace)
         return state
 

@@ -20,7 +20,7 @@ _PATIENCE = 0.3
 # slow the walk [s].
 _GRACE = 0.15
 # Time of waiting after which feet in the air are put down: they may hang, as the walk no longer lowers them [s].
-_HANGS = 1.0
+_PUTS_DOWN = 1.0
 # Margin of a centre of mass inside the support polygon: it sees neighbouring feet less than pi apart, by this [rad].
 _LEAST_ANGLE = 0.02
 # Where contacts are estimated: least sinking of the body at a foot at which it tips [m], from the mean tilt over a time
@@ -223,9 +223,9 @@ class Support:
         """Whether the robot waits until its feet hold it."""
         return self.pace < HALTING
 
-    def hangs(self, *, refuses: bool) -> bool:
+    def puts_down(self, *, refuses: bool) -> bool:
         """Return whether a robot that waits has to put down feet in the air: at once where the motion is refused."""
-        return self.halts and (refuses or max(self._waited, self._unsupported) > _HANGS)
+        return self.halts and (refuses or max(self._waited, self._unsupported) > _PUTS_DOWN)
 
     def holds(self, legs: list[int], footing: Footing, *, anew: bool) -> bool:
         """Return whether feet hold the robot; computed again only for other feet, or when asked to.
