@@ -122,6 +122,17 @@ def test_a_felt_walk_that_begins_keeps_its_feet_in_their_workspaces():
             assert prediction.excess(controller._tick.twist[None], transitions.bounds).max() < 1e-4
 
 
+def test_a_governor_that_stops_the_walk_says_why():
+    controller = walking()
+    asked = request(controller, (0.1, 0.0, 0.0))
+    behind = asked.state._replace(foothold=asked.state.foothold - 0.1)
+    grant = granted(twist_limiters(controller._walk), asked._replace(state=behind))
+    assert not grant.target.any()
+    (limitation,) = grant.limitations
+    assert limitation.text() == "twist: 0 % of the command; standing feet would leave their workspaces"
+    assert granted(twist_limiters(controller._walk), asked).limitations == ()
+
+
 def test_a_foot_that_waits_on_felt_ground_takes_the_time_in_which_it_would_fall_behind():
     controller = walking()
     transitions, state = controller._walk.transitions, controller._tick.gait

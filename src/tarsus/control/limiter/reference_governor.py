@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from tarsus.control.limitation import Limitation, LimitationKind
 from tarsus.control.limiter.protocol import TwistGrant, TwistRequest
 from tarsus.control.transition.executor import TransitionExecutor
 from tarsus.control.walk.reference_governor import FootPrediction
@@ -21,6 +22,9 @@ __all__ = ["GovernorLimiter"]
 
 # Relative difference from the commanded twist up to which the twist counts as steady.
 _STEADY = 1e-3
+_STOPS = Limitation(
+    kind=LimitationKind.TWIST, cause="standing feet would leave their workspaces", asked=1.0, granted=0.0
+)
 
 
 class GovernorLimiter:
@@ -47,7 +51,8 @@ class GovernorLimiter:
         stays = not self._looks() if state.felt else self._target.tolist() == self._command
         if not stays or command != self._command or not all(map(is_, stance, self._stance)):
             self._command, self._stance, self._target = command, stance, self._governed(request, command)
-        return TwistGrant(grant.fraction, self._target, grant.limitations)
+        stops = [_STOPS] if any(command) and not self._target.any() else []
+        return TwistGrant(grant.fraction, self._target, (*grant.limitations, *stops))
 
     def _governed(self, request: TwistRequest, command: list[float]) -> Float[np.ndarray, "3"]:
         """Return the twist to follow."""
