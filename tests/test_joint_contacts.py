@@ -95,6 +95,23 @@ def test_servos_that_follow_at_once_tell_no_contacts():
     assert not any(contacts)
 
 
+def test_a_walk_says_that_joint_angles_tell_no_contacts():
+    controller, said = tarsus.WalkController(STRIDER), list[str]()
+    for tick in range(520):
+        contacts = controller.contacts if tick >= 500 else None
+        readings = tarsus.SensorReadings(joint_angles=controller.angles, contacts=contacts, attitude=(0.0, 0.0))
+        controller.step((0.1, 0.0, 0.0) if tick > 50 else (0.0, 0.0, 0.0), 0.02, readings)
+        said.append("; ".join(limitation.text() for limitation in controller.limitations))
+    first = said.index(
+        "readings: joint_angles: they tell no contacts, as the servos do not yield to loads as those of "
+        "the robot file do"
+    )
+    assert 8.0 < (first - 50) * 0.02 < 8.6
+    assert set(said[:first]) == {""}
+    assert said[499] == said[first]
+    assert said[-1] == ""
+
+
 @pytest.mark.parametrize("dt", [DT, 0.002])
 def test_servos_that_are_slower_than_those_of_the_file_stop_no_swing(dt):
     # A servo of its own kind: 50 ms late, and it gives way by 0.02 rad under load.

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from tarsus.control.limitation import Limitation, LimitationKind
 from tarsus.control.pose.admittance import Admittance, AdmittanceFilter
 from tarsus.control.readings import ValidReadings, Vector
 from tarsus.control.sensing.contact_estimator import Contacts
@@ -29,6 +30,9 @@ _CONTACT_SHARE = 0.04
 _RISEN, _LANDS, _RATE, _MOST_ERROR, _MOST_OFFSET = 0.2, 0.5, 5.0, 0.1, 0.15
 # Contacts are estimated from joint angles once no other sensor has measured them for this long [s].
 _UNTOLD = 0.15
+# Time of steps in which joint angles tell no contacts after which that is reported [s].
+_REPORTED = 8.0
+_SILENT = "joint_angles: they tell no contacts, as the servos do not yield to loads as those of the robot file do"
 
 
 class FootLoads:
@@ -51,7 +55,7 @@ class FootLoads:
         self._weight = known_weight(robot)
         self._torques = FootForceEstimator(robot)
         self._joints = JointContacts(robot) if robot.has_masses and all(map(all, robot.servos)) else None
-        self.estimated, self._untold = False, math.inf
+        self.estimated, self._untold, self._silent = False, math.inf, 0.0
         # Zero offset of each load cell: what it measures without load [N].
         self._zeros = [0.0] * robot.legs
         self._filter = AdmittanceFilter(admittance, robot.legs) if admittance else None
@@ -79,7 +83,14 @@ class FootLoads:
         if self._untold > _UNTOLD and valid.joint_angles is not None and self._joints is not None:
             found = self._joints.contacts(valid, commanded, state, dt)
             self.estimated = found is not None
+            self._silent = 0.0 if self.estimated else self._silent + dt * (not state.down.all())
         return found
+
+    @property
+    def limitations(self) -> list[Limitation]:
+        """Joint angles that have not told contacts for long."""
+        silent = self._untold > _UNTOLD and self._silent > _REPORTED
+        return [Limitation(kind=LimitationKind.READINGS, cause=_SILENT)] if silent else []
 
     def offsets(
         self,

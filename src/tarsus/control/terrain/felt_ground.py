@@ -290,9 +290,9 @@ class FeltGround:
 
     @property
     def limitations(self) -> tuple[Limitation, ...]:
-        """Readings that are rejected, and what the ground does not allow."""
-        missing = self.missing.limitations
-        found = rejections(self.body.measured) + self.condition.limitations + self.body.limitations + missing
+        """Readings that are rejected or tell no contacts, and what the ground does not allow."""
+        missing, readings = self.missing.limitations, rejections(self.body.measured) + self._loads.limitations
+        found = readings + self.condition.limitations + self.body.limitations + missing
         explained = self.condition.in_air or self.missing.refuses or missing
         if self.support.pace < SLOW and not explained:
             slope, unheld = self.body.slope, "the feet on the ground do not hold the robot"
