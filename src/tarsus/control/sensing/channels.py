@@ -177,7 +177,7 @@ class _LegChannel(_Channel, ABC):
 
         The reasons for rejections are appended to `rejected`.
         """
-        usual = type(value) is np.ndarray and value.dtype is self._usual and value.shape == self._shapes[0]
+        usual = type(value) is np.ndarray and value.dtype == self._usual and value.shape == self._shapes[0]
         if usual and not any(self._unsettled) and (found := self._read_usual(value.ravel().tolist())):
             return found
         items = as_items(value, *self._shapes)
