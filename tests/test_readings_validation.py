@@ -26,7 +26,7 @@ PLAUSIBLE = {
     "torques": [[0.1, -0.5, 0.2]] * 6,
 }
 
-FINITE = ["joint_speeds", "currents", "temperatures", "voltages"]
+UNUSED = ["joint_speeds", "currents", "temperatures", "voltages"]
 
 
 class Hostile(list):
@@ -234,20 +234,10 @@ def test_readings_of_a_slow_wire_may_be_four_ticks_old():
     assert validated(dt=0.048, **PLAUSIBLE, age=0.2).rejected == ("all channels: older than 192 ms",)
 
 
-@pytest.mark.parametrize("channel", FINITE)
-def test_joint_channels_pass_where_they_are_finite(channel):
-    reading = np.arange(18.0).reshape(6, 3) - 5.0
-    found = validated(**{channel: reading})
-    assert found == ValidReadings(**{channel: tuple(map(tuple, reading.tolist()))})
-    assert getattr(validated(**{channel: np.full((6, 3), 1e300)}), channel)[0] == (1e300,) * 3
-    assert validated(**{channel: reading[:5]}).rejected == (f"{channel}: expected one reading per leg",)
-    assert validated(**{channel: reading[0]}).rejected == (f"{channel}: expected one reading per leg",)
-    for value in (math.nan, math.inf, -math.inf):
-        reading[2, 1] = value
-        found = validated(**{channel: reading})
-        assert getattr(found, channel)[2] is None
-        assert getattr(found, channel)[3] == (4.0, 5.0, 6.0)
-        assert found.rejected == (f"{channel} of {LEGS[2]}: not finite numbers",)
+@pytest.mark.parametrize("channel", UNUSED)
+def test_channels_that_nothing_uses_are_not_looked_at(channel):
+    for value in (np.zeros((6, 3)), np.full((5, 3), math.nan), "hot", HostileShape()):
+        assert validated(**{channel: value}, age={channel: 9.0}) == ValidReadings()
 
 
 STANDING = np.tile([0.0, 0.4, -1.4], (6, 1))
@@ -379,8 +369,8 @@ def test_invalid_ages_of_channels_reject_all_channels(age, reason):
 
 
 def test_channels_are_the_fields_of_the_readings():
-    assert set(CHANNELS) == set(FINITE) | set(PLAUSIBLE) | {"joint_angles", "angular_rates", "ground"}
-    assert all(hasattr(ValidReadings(), name) for name in CHANNELS)
+    assert set(CHANNELS) == set(UNUSED) | set(PLAUSIBLE) | {"joint_angles", "angular_rates", "ground"}
+    assert [name for name in CHANNELS if not hasattr(ValidReadings(), name)] == UNUSED
 
 
 @pytest.mark.parametrize("value", ["readings", 3, {"contacts": [True] * 6}, HostileShape(), ValidReadings()])
@@ -491,13 +481,13 @@ AGES = st.one_of(
 def test_arbitrary_objects_never_raise_and_never_pass(stream):
     validator, reasons = ReadingsValidator(STRIDER), set()
     for values, age in stream:
-        channels = dict(zip([*PLAUSIBLE, "currents", "angular_rates"], values, strict=True))
+        channels = dict(zip([*PLAUSIBLE, "joint_angles", "angular_rates"], values, strict=True))
         found = validated(validator, **channels, age=age)
         assert isinstance(found, ValidReadings)
         assert found.contacts is None or all(type(c) in {bool, type(None)} for c in found.contacts)
         assert found.attitude is None or all(abs(a) <= math.pi / 3 for a in found.attitude)
         assert found.angular_rates is None or all(map(math.isfinite, found.angular_rates))
-        for vectors, most in ((found.forces, 4 * WEIGHT), (found.torques, 100.0), (found.currents, math.inf)):
+        for vectors, most in ((found.forces, 4 * WEIGHT), (found.torques, 100.0), (found.joint_angles, 4.0)):
             assert vectors is None or len(vectors) == 6
             for part in vectors or ():
                 assert part is None or all(type(x) is float and math.isfinite(x) and abs(x) <= most for x in part)
@@ -541,21 +531,14 @@ def test_an_array_is_accepted_as_lists_of_its_numbers_are(numbers):
     values = np.array(numbers).reshape(6, 3)
     as_array, as_lists = ReadingsValidator(STRIDER), ReadingsValidator(STRIDER)
     for _ in range(2):
-        given = [{"joint_angles": each, "joint_speeds": each} for each in (values, values.tolist())]
+        given = [{"joint_angles": each, "torques": each} for each in (values, values.tolist())]
         found = as_array.validate(SensorReadings(**given[0]), 0.01)
         assert found == as_lists.validate(SensorReadings(**given[1]), 0.01)
 
 
 @pytest.mark.parametrize("dtype", [int, np.float32])
 def test_an_array_of_other_numbers_is_accepted_as_one_of_floats(dtype):
-    numbers = np.arange(18).reshape(6, 3)
-    valid = validated(joint_speeds=numbers.astype(dtype))
-    assert valid == validated(joint_speeds=numbers.astype(float))
-    assert all(type(number) is float for vector in valid.joint_speeds for number in vector)
-
-
-def test_an_array_whose_sum_is_not_finite_is_accepted_with_finite_numbers():
-    greatest = np.full((6, 3), 1e308)
-    valid = ReadingsValidator(STRIDER).validate(SensorReadings(joint_speeds=greatest), 0.01)
-    assert valid.joint_speeds == ((1e308,) * 3,) * 6
-    assert not valid.rejected
+    numbers = np.arange(18).reshape(6, 3) % 2
+    valid = validated(torques=numbers.astype(dtype))
+    assert valid == validated(torques=numbers.astype(float))
+    assert all(type(number) is float for vector in valid.torques for number in vector)

@@ -79,9 +79,11 @@ CHANNELS = tuple(field.name for field in fields(SensorReadings) if field.name !=
 class ValidReadings(NamedTuple):
     """Readings that passed validation, as plain Python values; a channel, or one leg of it, that did not is None.
 
+    Channels that nothing in the control uses are not among them.
+
     Attributes
     ----------
-    joint_angles, joint_speeds, currents, temperatures, voltages, torques : tuple of (three floats or None), or None
+    joint_angles, torques : tuple of (three floats or None), or None
         By leg, the values of coxa, femur and tibia; units as in `SensorReadings`.
     contacts : tuple of (bool or None), or None
         Which feet touch the ground.
@@ -110,10 +112,6 @@ class ValidReadings(NamedTuple):
     """
 
     joint_angles: tuple[Vector | None, ...] | None = None
-    joint_speeds: tuple[Vector | None, ...] | None = None
-    currents: tuple[Vector | None, ...] | None = None
-    temperatures: tuple[Vector | None, ...] | None = None
-    voltages: tuple[Vector | None, ...] | None = None
     contacts: tuple[bool | None, ...] | None = None
     forces: tuple[Vector | None, ...] | None = None
     torques: tuple[Vector | None, ...] | None = None

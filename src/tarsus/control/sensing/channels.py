@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import sys
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any, TypeAlias, TypeVar
@@ -34,7 +33,6 @@ _TURNS = f"changes faster than {math.degrees(_MOST_TURN):.4g} deg/s"
 # Joint angles: how far they may lie beyond their limits, and by how much they may change at once [rad]; how fast they
 # may change besides, as a multiple of the no-load speed of the robot's fastest servo.
 _OUTSIDE, _JUMP, _FASTER = 0.5, 0.5, 2.0
-_FINITE = (-sys.float_info.max, sys.float_info.max)
 _Bounds: TypeAlias = "tuple[float | Float[np.ndarray, '...'], float | Float[np.ndarray, '...']]"
 # Greatest force on one foot, in weights of the robot, and greatest torque, in stall torques of the joint's servo.
 _MOST_WEIGHTS, _MOST_STALLS = 4.0, 1.5
@@ -45,8 +43,6 @@ _ANY_WEIGHT, _ANY_STALL_TORQUE = 1e4, 1e3
 _PULL = 0.25
 _TOO_HEAVY = f"beyond {_MOST_WEIGHTS:g} times the robot's weight, or downward beyond {_PULL:g} times"
 _TOO_STRONG = f"beyond {_MOST_STALLS:g} times the stall torque"
-# Channels that are plausible wherever they are finite.
-_FINITE_CHANNELS = ("joint_speeds", "currents", "temperatures", "voltages")
 
 
 def channels_of(robot: Robot) -> dict[str, Any]:
@@ -62,7 +58,6 @@ def channels_of(robot: Robot) -> dict[str, Any]:
         "joint_angles": _JointAngleChannel(legs, np.asarray(robot.limits), fastest),
         "forces": _ForceChannel("forces", legs, (pull, force), beyond=_TOO_HEAVY, accept_z=True),
         "torques": _VectorChannel("torques", legs, (-torque, torque), beyond=_TOO_STRONG),
-        **{name: _VectorChannel(name, legs) for name in _FINITE_CHANNELS},
         "angular_rates": _AngularRateChannel(["angular_rates"]),
         "ground": _GroundChannel(["ground"]),
     }
@@ -219,16 +214,14 @@ class _VectorChannel(_LegChannel):
     name, legs : str, sequence of str
         Name of the channel in messages; names of the legs in messages.
     bounds : tuple of (float or array, shape (3,) or (legs, 3))
-        Least and greatest plausible value of each number; left out, every finite number is plausible.
+        Least and greatest plausible value of each number.
     beyond : str
         The reason given for numbers outside the bounds.
     accept_z : bool
         Whether one number per leg, the last of the three, is accepted too.
     """
 
-    def __init__(
-        self, name: str, legs: Sequence[str], bounds: _Bounds = _FINITE, *, beyond: str = "", accept_z: bool = False
-    ) -> None:
+    def __init__(self, name: str, legs: Sequence[str], bounds: _Bounds, *, beyond: str, accept_z: bool = False) -> None:
         shape = (len(legs), 3)
         super().__init__(name, legs, float, shape, *([shape[:1]] if accept_z else []))
         self._low, self._high = (np.broadcast_to(bound, shape).ravel().tolist() for bound in bounds)

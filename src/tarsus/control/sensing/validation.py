@@ -22,7 +22,9 @@ _MOST_AGE, _MOST_TICKS = 0.1, 4.0
 _Ages: TypeAlias = tuple[Vector, ...] | None
 
 _NO_READINGS, _NONE = ValidReadings(), frozenset[int]()
-_VALUES, _JOINT_ANGLES, _ATTITUDE = attrgetter(*CHANNELS), CHANNELS.index("joint_angles"), CHANNELS.index("attitude")
+# Channels that the control uses, in the order of `ValidReadings`.
+_USED = tuple(name for name in CHANNELS if name in ValidReadings._fields)
+_VALUES, _JOINT_ANGLES, _ATTITUDE = attrgetter(*_USED), _USED.index("joint_angles"), _USED.index("attitude")
 # What is wrong with an age that is no number; the rest for a channel whose joints may have an age each.
 _BAD_AGE, _NOR_EACH = "age is not a number >= 0 s", ", nor one for each joint"
 
@@ -43,7 +45,7 @@ class ReadingsValidator:
 
     def __init__(self, robot: Robot) -> None:
         channels, self._legs = channels_of(robot), robot.leg_codes
-        self._channels = [channels[name] for name in CHANNELS]
+        self._channels = [channels[name] for name in _USED]
         self._timed = channels["attitude"], channels["joint_angles"]
 
     def validate(self, readings: SensorReadings | None, dt: float) -> ValidReadings:
@@ -67,7 +69,7 @@ class ReadingsValidator:
                 channel.reset()
             return ValidReadings(rejected=(problem,))
         rejected, values = list[str](), list(_VALUES(readings))
-        for index, name in enumerate(CHANNELS if ages else ()):
+        for index, name in enumerate(_USED if ages else ()):
             if values[index] is not None and (stale := _stale(name, ages.get(name, 0.0), most, _NOR_EACH)):
                 rejected.append(stale)
                 self._channels[index].reset()
@@ -82,7 +84,7 @@ class ReadingsValidator:
             # An empty mapping, which is not a number, means age 0.
             age = max(0.0, as_number(readings.age))
             return ValidReadings._make((*found, age, None, age, age, _NONE, tuple(rejected)))
-        given = [name for name, value in zip(CHANNELS, values, strict=True) if value is not None]
+        given = [name for name, value in zip(_USED, values, strict=True) if value is not None]
         if of_joints and found[_JOINT_ANGLES]:
             young = self._young(of_joints, most, rejected)
             kept = tuple(each if leg in young else None for leg, each in enumerate(found[_JOINT_ANGLES]))
