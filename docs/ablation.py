@@ -18,9 +18,9 @@ import numpy as np
 import tarsus
 from page_tables import Several, write_tables
 from rough_ground import CASES, GROUNDS, PAGE, RANDOM, Case, Outcome, walk
+from tarsus.control.contact.foot_contacts import FootContacts
+from tarsus.control.felt import landing
 from tarsus.control.pose.posture_feedback import PostureFeedback
-from tarsus.control.terrain import ground_contact
-from tarsus.control.terrain.foot_contacts import FootContacts
 
 ROBOT, SHOWN = "strider", ("smooth60", "blocks60", "step+40", "ramp+20", "stairs")
 
@@ -41,7 +41,7 @@ MECHANISMS: dict[str, tuple[str, Callable[[], AbstractContextManager[Any]]]] = {
     "adaptation": ("without adaptation", nullcontext),
     "lost time": ("without lost time", nullcontext),
     "lost way": ("without odometry", nullcontext),
-    "obstacles": ("felt", off(ground_contact, "_collides", result=False)),
+    "obstacles": ("felt", off(landing, "collides", result=False)),
     "search in stance": ("felt", partial(patch.object, FootContacts, "standing", ALL_STAND, create=True)),
     "reach": ("felt", off(PostureFeedback, "fit_to_reach", result=None)),
     "contacts": ("blind", nullcontext),

@@ -8,6 +8,7 @@ from __future__ import annotations
 import argparse
 import itertools
 import math
+from contextlib import ExitStack
 from dataclasses import replace
 from statistics import median
 from typing import Any, NamedTuple
@@ -18,7 +19,7 @@ import numpy as np
 import tarsus
 from page_tables import Several, measured, write_tables
 from rough_ground import PAGE, ROBOTS
-from tarsus.control.terrain import ground_contact
+from tarsus.control.felt import collision, landing
 from tarsus.simulation import SensorSuite, SimulatedPlant, terrain
 from tarsus.simulation.sensors.suite import FootSwitch, Sensor
 
@@ -136,14 +137,16 @@ def walk(job: Job) -> Outcome:
     ahead = furthest = -math.inf
 
     def noting(function: Any) -> Any:
-        def noted(state: Any, leg: int, *arguments: Any, **more: Any) -> Any:
+        def noted_call(state: Any, leg: int, *arguments: Any, **more: Any) -> Any:
             touches.reacted.add(leg)
             return function(state, leg, *arguments, **more)
 
-        return noted
+        return noted_call
 
-    names = ("_rising_again", "_trying_again", "_landed")
-    with patch.multiple(ground_contact, **{name: noting(getattr(ground_contact, name)) for name in names}):
+    reactions = (collision, "trying_again"), (landing, "rising_again"), (landing, "trying_again"), (landing, "_landed")
+    with ExitStack() as noted:
+        for module, name in reactions:
+            noted.enter_context(patch.object(module, name, noting(getattr(module, name))))
         plant.start(output)
         for twist, way in ((speed, AHEAD), (-speed, BACK)):
             for _ in range(round(way / speed / dt)):

@@ -1,6 +1,6 @@
 """Contacts of feet, taken in with what is usual besides them."""
 
-from tarsus.control.terrain.support import Footing
+from tarsus.control.contact.footing import Footing
 
 FEET = [0.27 + 0.15j, 0.31j, -0.27 + 0.15j, -0.27 - 0.15j, -0.31j, 0.27 - 0.15j]
 STANDING = Footing(FEET, [True] * 6, 0j, 0.1)

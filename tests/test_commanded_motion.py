@@ -8,8 +8,8 @@ import pytest
 
 from gait_robots import point_feet
 from tarsus.control.command import Command
+from tarsus.control.contact.footing import along_gravity, off_commanded
 from tarsus.control.readings import SensorReadings
-from tarsus.control.terrain.support import along_gravity, off_commanded
 from tarsus.control.walk.state import GaitState
 from tarsus.control.walk_controller import WalkController
 from tarsus.gait.gait import Gait

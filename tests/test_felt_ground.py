@@ -9,19 +9,21 @@ import pytest
 
 import tarsus
 from sample_contacts import FEET, STANDING, find_open, take_in
+from tarsus.control.contact.foot_contacts import FootContacts
+from tarsus.control.contact.footing import Footing, along_gravity, holds
+from tarsus.control.contact.support import Support
+from tarsus.control.contact.tipping import Tipping
 from tarsus.control.limiter.protocol import TwistGrant, TwistRequest
 from tarsus.control.pose.admittance import Admittance
 from tarsus.control.pose.posture_feedback import BodyMove, PostureFeedback, PostureRates
 from tarsus.control.readings import SensorReadings, ValidReadings
+from tarsus.control.search.missing_ground import MissingGround
 from tarsus.control.sensing.contact_estimator import ContactEstimator
 from tarsus.control.sensing.foot_loads import FootLoads
 from tarsus.control.sensing.leg_odometry import CommandedMotion, LegOdometry
 from tarsus.control.sensing.validation import ReadingsValidator
-from tarsus.control.terrain.foot_contacts import FootContacts
-from tarsus.control.terrain.missing_ground import MissingGround
 from tarsus.control.terrain.reach import Reach
 from tarsus.control.terrain.roughness import Roughness
-from tarsus.control.terrain.support import Footing, Support, Tipping, along_gravity, holds
 from tarsus.control.walk.felt_feet import FeltFoot, FeltInputs, GroundUnder, travel_share
 from tarsus.control.walk.vertical_motion import _searching, _swinging
 from tarsus.control.walk_controller import WalkController
@@ -636,7 +638,7 @@ def test_a_walk_by_estimated_contacts_does_not_go_on_over_an_edge_at_which_it_ha
     monkeypatch.setattr(ground._loads, "contacts", estimated)
     tipping = Tipping(1.0)
     tipping.leg, tipping._since, tipping.step = 0, 1.0, lambda *_: None
-    ground._tipping = tipping
+    ground._search._tipping = tipping
     for _ in range(20):
         controller.step((0.1, 0.0, 0.0), 0.01, readings=readings)
     assert ground.missing.refuses

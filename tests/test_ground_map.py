@@ -9,11 +9,11 @@ import pytest
 
 import tarsus
 from gait_robots import preset
+from tarsus.control.contact.footing import Footing
+from tarsus.control.felt.bearing import not_sunk, supporting
 from tarsus.control.readings import SensorReadings, ValidReadings
 from tarsus.control.sensing.validation import ReadingsValidator
-from tarsus.control.terrain.ground_contact import not_sunk, supporting
 from tarsus.control.terrain.ground_map import GroundMap
-from tarsus.control.terrain.support import Footing
 from tarsus.control.walk.state import GaitState
 from tarsus.errors import InputError
 from tarsus.gait.ground_heights import GroundHeights

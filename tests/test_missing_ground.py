@@ -13,16 +13,16 @@ import tarsus
 from sample_contacts import find_open, take_in
 from sample_gait_states import begun, rest_of, setup_of
 from sample_robots import halved
+from tarsus.control.contact.foot_contacts import FootContacts
+from tarsus.control.contact.footing import Footing
+from tarsus.control.felt.landing import met_ground
 from tarsus.control.limitation import LimitationKind
 from tarsus.control.limiter.protocol import TwistGrant, TwistRequest
 from tarsus.control.readings import ValidReadings
+from tarsus.control.search.missing_ground import MissingGround
+from tarsus.control.search.search import Search
 from tarsus.control.sensing.leg_odometry import LegOdometry
-from tarsus.control.terrain.foot_contacts import FootContacts
-from tarsus.control.terrain.ground_contact import met_ground
-from tarsus.control.terrain.missing_ground import MissingGround
 from tarsus.control.terrain.roughness import Roughness
-from tarsus.control.terrain.search import Search
-from tarsus.control.terrain.support import Footing
 from tarsus.control.walk.felt_feet import FeltFoot
 from tarsus.control.walk.step_timing import StepTiming
 from tarsus.gait.swing_trajectory import quintic

@@ -5,8 +5,8 @@ import pytest
 
 import tarsus
 from sample_contacts import FEET, STANDING
+from tarsus.control.contact.tipping import Sinking
 from tarsus.control.readings import ValidReadings
-from tarsus.control.terrain.support import Sinking
 
 DT = 0.04
 

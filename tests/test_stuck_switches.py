@@ -5,8 +5,8 @@ import pytest
 import sensor_faults
 import tarsus
 from sample_contacts import STANDING, find_open, take_in
+from tarsus.control.contact.foot_contacts import FootContacts
 from tarsus.control.readings import SensorReadings
-from tarsus.control.terrain.foot_contacts import FootContacts
 from tarsus.control.walk_controller import WalkController
 
 STRIDER = tarsus.load_robot("strider")

@@ -14,9 +14,9 @@ from tarsus.control.limiter.workspace import top_speed
 from tarsus.control.pose.admittance import Admittance
 from tarsus.control.pose.posture_feedback import Levelling
 from tarsus.control.readings import SensorReadings, ValidReadings
+from tarsus.control.search.missing_ground import SLOW
 from tarsus.control.sensing.foot_loads import FootLoads
 from tarsus.control.terrain.body_motion import BodyMotion
-from tarsus.control.terrain.missing_ground import SLOW
 from tarsus.control.terrain.roughness import GroundAdaptation
 from tarsus.control.tick.components import WalkComponents
 from tarsus.control.tick.estimate import estimated

@@ -1,1 +1,1 @@
-"""Ground that is felt or given: contacts in time, body motion, support, reach, roughness, slopes, obstacles, holes."""
+"""The ground, as far as it is known, and how the body moves over it."""

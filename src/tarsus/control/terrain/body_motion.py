@@ -5,6 +5,9 @@ from __future__ import annotations
 import cmath
 import math
 
+from tarsus.control.contact.foot_contacts import FootContacts
+from tarsus.control.contact.footing import Footing, off_commanded, sunk_at
+from tarsus.control.contact.tipping import Sinking
 from tarsus.control.limitation import Limitation, LimitationKind
 from tarsus.control.limiter.slope_limit import SlopeLimit
 from tarsus.control.limiter.stopped_body import StoppedBody
@@ -13,11 +16,9 @@ from tarsus.control.pose.posture_feedback import BodyMove, Levelling, PostureFee
 from tarsus.control.pose.slope_stance import SlopeStance
 from tarsus.control.readings import RollPitch, ValidReadings, Vector
 from tarsus.control.sensing.leg_odometry import CommandedMotion, LegOdometry
-from tarsus.control.terrain.foot_contacts import FootContacts
 from tarsus.control.terrain.ground_map import GroundMap
 from tarsus.control.terrain.reach import Reach
 from tarsus.control.terrain.roughness import GroundAdaptation, Roughness
-from tarsus.control.terrain.support import Footing, Sinking, off_commanded, sunk_at
 from tarsus.control.transition.executor import TransitionExecutor
 from tarsus.control.walk.state import PHASE_TOLERANCE, GaitState
 from tarsus.control.walk_state import TickState

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
+from tarsus.control.felt.felt_ground import FeltGround
 from tarsus.control.sensing.foot_loads import FootLoads
 from tarsus.control.terrain.body_motion import BodyMotion
-from tarsus.control.terrain.felt_ground import FeltGround
 from tarsus.control.transition.executor import TransitionExecutor
 from tarsus.control.transition.planner import TransitionPlanner
 from tarsus.control.transition.stance_transition import StanceTransition

@@ -6,9 +6,9 @@ import math
 from collections.abc import Sequence
 from typing import TypeAlias
 
+from tarsus.control.contact.footing import Footing, holds, sunk_at
 from tarsus.control.readings import RollPitch
 from tarsus.control.sensing.contact_estimator import ContactEstimator, Contacts
-from tarsus.control.terrain.support import Footing, holds, sunk_at
 
 __all__ = ["FootContacts"]
 

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from tarsus.control.contact.footing import Footing, holds
 from tarsus.control.limitation import Cause, Limitation, LimitationKind
 from tarsus.control.limiter.protocol import TwistGrant, TwistRequest, leads_towards
-from tarsus.control.terrain.edge import FORGETS, Edge, direction
+from tarsus.control.search.edge import FORGETS, Edge, direction
+from tarsus.control.search.obstacles import Obstacles
+from tarsus.control.search.search import STANDS, Search
 from tarsus.control.terrain.ground_map import GroundMap
-from tarsus.control.terrain.obstacles import Obstacles
-from tarsus.control.terrain.search import STANDS, Search
-from tarsus.control.terrain.support import Footing, holds
 from tarsus.control.transition.foothold_transfer import FootholdTransfer
 
 __all__ = ["SLOW", "MissingGround"]

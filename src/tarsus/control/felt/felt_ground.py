@@ -8,25 +8,25 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from tarsus.control.contact.footing import Footing, along_gravity, sunk_at
+from tarsus.control.contact.support import Support
+from tarsus.control.felt.bearing import supporting
+from tarsus.control.felt.ground_search import GroundSearch
+from tarsus.control.felt.landing import met_ground, put_down
 from tarsus.control.limitation import Limitation, LimitationKind
 from tarsus.control.readings import SensorReadings, Vector
+from tarsus.control.search.missing_ground import SLOW, MissingGround
 from tarsus.control.sensing.body_condition import BodyCondition
 from tarsus.control.sensing.continued_readings import ContinuedReadings
 from tarsus.control.sensing.foot_loads import FootLoads
 from tarsus.control.sensing.swing_monitor import USUAL_LAG, SwingMonitor
 from tarsus.control.sensing.validation import rejections
 from tarsus.control.terrain.body_motion import BodyMotion
-from tarsus.control.terrain.ground_contact import hovering, met_ground, not_sunk, put_down, supporting
-from tarsus.control.terrain.missing_ground import SLOW, MissingGround
-from tarsus.control.terrain.search import Search
-from tarsus.control.terrain.support import Footing, Support, Tipping, along_gravity, off_commanded, sunk_at
 from tarsus.control.transition.executor import TransitionExecutor
-from tarsus.control.transition.foothold_transfer import FootholdTransfer
 from tarsus.control.walk.felt_feet import FeltFoot, FeltInputs, GroundUnder, travel_share
 from tarsus.control.walk.state import GaitState
 from tarsus.control.walk.step_timing import StepTiming
 from tarsus.control.walk_state import TickState
-from tarsus.gait.foot_plane import FootPlane
 from tarsus.gait.stance.stance_geometry import SWING_HEIGHT
 from tarsus.kinematics.mass import centre_of_mass
 from tarsus.robot.robot import Robot
@@ -45,8 +45,6 @@ _LEAVING = 0.1
 _DESCENT, _ESTIMATED_DESCENT = 0.4, 0.25
 # Feet that search while others hold a standing robot: greatest speed [m/s], depth below the expected ground [m].
 _GENTLE, _NEAR = 0.02, 0.004
-# Speed above which a foot that goes down is not at the end of its reach, which itself sinks with the body [m/s].
-_FALLS = 0.1
 
 
 class FeltGround:
@@ -82,7 +80,8 @@ class FeltGround:
         self.missing = MissingGround(robot.leg_names, scale=body.reach.scale)
         self.support, self.condition, self._swings = Support(), BodyCondition(), SwingMonitor()
         self.offsets: Float[np.ndarray, "legs"] | None = None
-        self.readings, self._loads, self._tipping = ContinuedReadings(robot), loads, Tipping(body.reach.scale)
+        self.readings, self._loads = ContinuedReadings(robot), loads
+        self._search = GroundSearch(body, self.condition, self.missing)
         self._centre = complex(*centre_of_mass(robot, angles)[:2].tolist())
         # Inputs kept while all is as planned, and what for; ticks and times since contacts and support were looked at.
         self._inputs: FeltInputs | None = None
@@ -172,7 +171,7 @@ class FeltGround:
             free = [on and leg not in self.missing.obstacles.stops for leg, on in enumerate(footing.down)]
             self.body.step(tick, footing._replace(down=free), transitions, pace=self.support.pace)
             self.ground.choose(state, self.body.reach, footholds)
-        stands = self._find_ground(state, footing, footholds, dt)
+        stands = self._search.step(state, footing, footholds, dt, rests=self._rests and self.support.held)
         bearing = footing._replace(down=supporting(state, self.body, footing, walks=not standing))
         self._decide_on_support(bearing, due, dt, timing.swing_time)
         self.body.roughness.decay(0.0 if standing else dt * timing.frequency)
@@ -218,50 +217,6 @@ class FeltGround:
             rough=min(depth / (scale * _ROUGH), 1.0),
             slow_contact=body.stance.lasting,
         )
-
-    def _find_ground(self, state: GaitState, footing: Footing, footholds: FootholdTransfer, dt: float) -> list[bool]:
-        """Decide where feet that find no ground step; return which feet stand, or count as standing in the air."""
-        contacts, missing, deeper = self.contacts, self.missing, self.body.roughness.deeper
-        low = not_sunk(state, self.body, footing, tips=bool(missing.tips or missing.places))
-        tilt = self.body.measured.attitude and off_commanded(self.body.measured.attitude, state)
-        feet = zip(footing.places, state.ground_height.tolist(), strict=True)
-        depths = [self.ground.at(place) + state.elevation - height for place, height in feet]
-        contacts.find_open(footing, tilt, dt, low=low, depths=depths)
-        missing.twist = state.twist.value.tolist()
-        missing.turn_to(state.yaw)
-        if self.condition.carried:
-            missing.forget()
-            self.ground.plane = FootPlane()
-        contacts.hovering = hovering(state, contacts, depths)
-        held = [self.condition.in_air or contacts.stands(leg) for leg in range(len(depths))]
-        stands = [on and not missing.steps_back(leg, footing.places[leg]) for leg, on in enumerate(held)]
-        missing.sees(self.ground, footholds.rest.tolist(), dt)
-        waits = self.condition.carried or (self._rests and self.support.held and low == footing.down)
-        searches = [] if waits else self._searches(state, footing, stands)
-        missing.lost = contacts.tips(footing, deeper)
-        if self._loads.estimated:
-            self._tipping.step(footing, depths, tilt, dt)
-            missing.lost = self._tipping.leg if missing.lost is None else missing.lost
-            if missing.lost is not None and self._tipping.at_edge:
-                missing.tipped(missing.lost, footing.places[missing.lost])
-        elif missing.lost is None:
-            missing.lost = self.body.sinks_at(state, footing, dt)
-        footing = footing._replace(down=[on and stand for on, stand in zip(footing.down, stands, strict=True)])
-        missing.step(searches, footing, dt, footholds=footholds, deeper=deeper)
-        self.body.roughness.at_edge(missing.edge)
-        return stands
-
-    def _searches(self, state: GaitState, footing: Footing, stands: list[bool]) -> list[Search]:
-        """Return the feet that should stand and feel no ground."""
-        contacts, found = self.contacts, list[Search]()
-        legs = [leg for leg, on in enumerate(footing.down) if on and not stands[leg] and contacts.is_known(leg)]
-        off = self.body.odometry.feet_off_commanded(legs, self.body.measured, self.body.commanded)
-        for leg in legs:
-            place, foot = footing.places[leg], state.felt[leg]
-            depth = self.ground.lowest_near(place) + state.elevation - float(state.ground_height[leg])
-            known = foot.speed < -_FALLS, contacts.seeks(leg), contacts.sunk[leg], off[leg][2] if leg in off else 0.0
-            found.append(Search(leg, depth, *known, sunk_at(place, self.body.off), contacts.age))
-        return found
 
     def _under(self, state: GaitState, leg: int, place: complex, *, down: bool) -> GroundUnder:
         """Return the ground under a foot in the air or without contact, at a place in the heading frame."""

@@ -1,0 +1,1 @@
+"""Which feet bear load, where they are, and whether they hold the robot."""

@@ -1,0 +1,1 @@
+"""A walk that feels the ground: what it does with readings, tick by tick."""
