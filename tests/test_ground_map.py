@@ -13,6 +13,7 @@ from tarsus.control.contact.footing import Footing
 from tarsus.control.felt.bearing import not_sunk, supporting
 from tarsus.control.readings import SensorReadings, ValidReadings
 from tarsus.control.sensing.validation import ReadingsValidator
+from tarsus.control.terrain.foothold_choice import FootholdChoice
 from tarsus.control.terrain.ground_map import GroundMap
 from tarsus.control.walk.state import GaitState
 from tarsus.errors import InputError
@@ -113,55 +114,58 @@ def moved(state, leg, way):
     return state._replace(foothold=foothold)
 
 
-def choice(heights, leg=0, phase=0.1):
+def chosen_for(heights, leg=0, phase=0.1):
     """How far beside its foothold a foot of a walking robot is put down on ground of some heights."""
     (state, reach, footholds), known = stepping(leg, phase), GroundMap()
+    choice = FootholdChoice(known)
     foothold = complex(state.foothold[leg]) - state.origin
     known.see(ValidReadings(ground=GroundHeights(heights=heights(X + 1j * Y - foothold))), state)
     feet = [(complex(state.foot[other]) - state.origin, 0.0) for other in range(6) if other != leg]
     known.step(feet, None, state, 0.03, drift=0j)
-    known.choose(state, reach, footholds)
-    chosen = dict(known.beside)
+    choice.step(state, reach, footholds)
+    chosen = dict(choice.beside)
     # The step leads there now.
-    known.choose(moved(state, leg, chosen.get(leg, 0j)), reach, footholds)
-    assert known.beside == chosen
-    known.choose(state._replace(down=np.ones(6, dtype=bool)), reach, footholds)
-    assert known.beside == {}
+    choice.step(moved(state, leg, chosen.get(leg, 0j)), reach, footholds)
+    assert choice.beside == chosen
+    choice.step(state._replace(down=np.ones(6, dtype=bool)), reach, footholds)
+    assert choice.beside == {}
     return chosen
 
 
 def test_feet_keep_to_their_footholds_on_even_ground_and_away_from_edges_and_holes_elsewhere():
-    assert choice(lambda place: 0.0 * place.real) == {0: 0j}
-    assert choice(lambda place: 0.1 * place.real)[0] == 0j
-    assert choice(lambda place: 0.0 * place.real, phase=0.5) == {}
-    edge = choice(lambda place: np.where(place.real > 0.005, 0.06, 0.0))[0]
+    assert chosen_for(lambda place: 0.0 * place.real) == {0: 0j}
+    assert chosen_for(lambda place: 0.1 * place.real)[0] == 0j
+    assert chosen_for(lambda place: 0.0 * place.real, phase=0.5) == {}
+    edge = chosen_for(lambda place: np.where(place.real > 0.005, 0.06, 0.0))[0]
     assert abs(edge.real) >= 0.02
-    hole = choice(lambda place: np.where(np.abs(place) < 0.035, -0.3, 0.0))[0]
+    hole = chosen_for(lambda place: np.where(np.abs(place) < 0.035, -0.3, 0.0))[0]
     assert abs(hole) > 0.035
     # Away from an edge that is 30 mm off, if there is no ground beyond it.
-    assert choice(lambda place: np.where(place.real > 0.03, -0.3, 0.0))[0].real < 0.0
+    assert chosen_for(lambda place: np.where(place.real > 0.03, -0.3, 0.0))[0].real < 0.0
 
 
 def test_a_foot_over_a_hole_gets_another_foothold_as_soon_as_there_is_one():
     (state, reach, footholds), known = stepping(), GroundMap()
+    choice = FootholdChoice(known)
     # Its legs reach 0.13 m below the ground, with the body as low as it goes.
     for depth, hole in ((0.3, True), (0.14, True), (0.11, False), (0.0, False)):
         known.see(ValidReadings(ground=GroundHeights(heights=np.where(X > 0.1, -depth, 0.0))), state)
         known.step([(complex(foot), 0.0) for foot in REST[1:5]], None, state, 0.03, drift=0j)
-        known.choose(state, reach, footholds)
-        assert bool(known.holes) == hole
-    assert known.beside == {0: 0j}
+        choice.step(state, reach, footholds)
+        assert bool(choice.holes) == hole
+    assert choice.beside == {0: 0j}
 
 
 def known_over(heights):
     """A ground map of heights that were given, once a foot in the air has been given its foothold on them."""
     (state, reach, footholds), known = stepping(), GroundMap()
+    choice = FootholdChoice(known)
     known.see(ValidReadings(ground=GroundHeights(heights=heights)), state)
     on = [complex(foot) for foot in REST[1:5]]
     feet = [(foot, float(heights[round(foot.real / 0.02) + 30, round(foot.imag / 0.02) + 30])) for foot in on]
     for _ in range(100):
         known.step(feet, None, state, 0.03, drift=0j)
-    known.choose(state, reach, footholds)
+    choice.step(state, reach, footholds)
     return known
 
 
@@ -182,41 +186,44 @@ def test_ground_is_no_deeper_for_a_leg_as_the_plane_of_the_feet_rises():
 
 def test_a_foothold_that_moves_into_a_hole_is_left_for_another_one_until_the_foot_goes_down():
     (state, reach, footholds), known = stepping(), GroundMap()
+    choice = FootholdChoice(known)
     hole = np.abs(X + 1j * Y - (complex(state.foothold[0]) - state.origin) + 0.1) < 0.05
     known.see(ValidReadings(ground=GroundHeights(heights=np.where(hole, -0.3, 0.0))), state)
     known.step([(complex(foot), 0.0) for foot in REST[1:5]], None, state, 0.03, drift=0j)
-    known.choose(state, reach, footholds)
-    assert known.beside == {0: 0j}
+    choice.step(state, reach, footholds)
+    assert choice.beside == {0: 0j}
     back = moved(state, 0, -0.06 + 0j)
     for phase, chooses in ((0.5, False), (0.4, True)):
-        known.choose(back._replace(swing_phase=np.full(6, phase)), reach, footholds)
-        assert (known.beside[0].real > 0.015) == chooses
+        choice.step(back._replace(swing_phase=np.full(6, phase)), reach, footholds)
+        assert (choice.beside[0].real > 0.015) == chooses
         # It is not held up: it goes down soon.
-        assert known.holes == {}
+        assert choice.holes == {}
 
 
 def test_another_foothold_is_chosen_beside_that_of_the_step():
     (state, reach, footholds), known = stepping(), GroundMap()
+    choice = FootholdChoice(known)
     known.see(ValidReadings(ground=GroundHeights(heights=np.where(X > 0.1, -0.3, 0.0))), state)
     known.step([(complex(foot), 0.0) for foot in REST[1:5]], None, state, 0.03, drift=0j)
-    known.choose(state, reach, footholds)
-    (chosen,), _ = known.beside.values(), known.holes[0]
-    known.choose(moved(state, 0, chosen), reach, footholds)
-    assert known.beside == {0: chosen}
+    choice.step(state, reach, footholds)
+    (chosen,), _ = choice.beside.values(), choice.holes[0]
+    choice.step(moved(state, 0, chosen), reach, footholds)
+    assert choice.beside == {0: chosen}
 
 
 def test_a_foot_that_crosses_a_hole_is_known_until_it_is_down():
     (state, reach, footholds), known = stepping(), GroundMap()
+    choice = FootholdChoice(known)
     state = state._replace(foot=state.foothold - 0.15)
     foothold = complex(state.foothold[0]) - state.origin
     for ahead, crosses in ((-0.08, True), (0.25, False)):
         hole = np.where(np.abs(X - foothold.real - ahead) < 0.03, -0.3, 0.0)
         known.see(ValidReadings(ground=GroundHeights(heights=hole)), state)
         known.step([(complex(foot), 0.0) for foot in REST[1:5]], None, state, 0.03, drift=0j)
-        known.choose(state, reach, footholds)
-        assert known.crossing == ({0} if crosses else set())
-        known.choose(state._replace(down=np.ones(6, dtype=bool)), reach, footholds)
-        assert known.crossing == set()
+        choice.step(state, reach, footholds)
+        assert choice.crossing == ({0} if crosses else set())
+        choice.step(state._replace(down=np.ones(6, dtype=bool)), reach, footholds)
+        assert choice.crossing == set()
 
 
 def body(known, reach, standing, off=(0.0, 0.0)):
@@ -233,11 +240,12 @@ def footing(state, places):
 @pytest.mark.parametrize("depth", [0.0, 0.3])
 def test_no_foot_over_a_hole_that_is_seen_stands_on_ground_that_its_switch_does_not_tell_of(depth):
     (state, reach, footholds), known = stepping(), GroundMap()
+    choice = FootholdChoice(known)
     places = [complex(foot) - state.origin for foot in state.foot]
     hole = np.abs(X + 1j * Y - places[0]) < 0.05
     known.see(ValidReadings(ground=GroundHeights(heights=np.where(hole, -depth, 0.0))), state)
     known.step([(place, 0.0) for place in places[1:]], None, state, 0.03, drift=0j)
-    known.choose(state, reach, footholds)
+    choice.step(state, reach, footholds)
     found = not_sunk(state, body(known, reach, [True] * 6), footing(state, places), tips=False)
     assert found == [depth == 0.0] * 6
 

@@ -74,7 +74,7 @@ def touching_in_swing(phase, height, foot):
 
 
 def seen(missing, holes, edge=1.0, dt=0.01):
-    missing.sees(SimpleNamespace(holes=holes, is_hole=lambda place: place.real > edge), REST, dt)
+    missing.sees(SimpleNamespace(is_hole=lambda place: place.real > edge), holes, REST, dt)
 
 
 def limited(missing, *twist):

@@ -9,6 +9,7 @@ from tarsus.control.search.missing_ground import MissingGround
 from tarsus.control.search.search import Search
 from tarsus.control.sensing.body_condition import BodyCondition
 from tarsus.control.terrain.body_motion import BodyMotion
+from tarsus.control.terrain.foothold_choice import FootholdChoice
 from tarsus.control.transition.foothold_transfer import FootholdTransfer
 from tarsus.control.walk.state import GaitState
 from tarsus.gait.foot_plane import FootPlane
@@ -24,14 +25,16 @@ class GroundSearch:
 
     Parameters
     ----------
-    body, condition : BodyMotion, BodyCondition
-        Contacts, expected ground, roughness and reach; whether the robot is in the air or carried.
-    missing : MissingGround
-        Decides where feet that find no ground step.
+    body, choice : BodyMotion, FootholdChoice
+        Contacts, expected ground, roughness and reach; holes at the footholds of feet in the air.
+    condition, missing : BodyCondition, MissingGround
+        Whether the robot is in the air or carried; where feet that find no ground step.
     """
 
-    def __init__(self, body: BodyMotion, condition: BodyCondition, missing: MissingGround) -> None:
-        self._body, self._condition, self._missing = body, condition, missing
+    def __init__(
+        self, body: BodyMotion, choice: FootholdChoice, condition: BodyCondition, missing: MissingGround
+    ) -> None:
+        self._body, self._choice, self._condition, self._missing = body, choice, condition, missing
         self._tipping = Tipping(body.reach.scale)
 
     def step(
@@ -61,7 +64,7 @@ class GroundSearch:
         contacts.hovering = hovering(state, contacts, depths)
         held = [condition.in_air or contacts.stands(leg) for leg in range(len(depths))]
         stands = [on and not missing.steps_back(leg, footing.places[leg]) for leg, on in enumerate(held)]
-        missing.sees(ground, footholds.rest.tolist(), dt)
+        missing.sees(ground, self._choice.holes, footholds.rest.tolist(), dt)
         waits = condition.carried or (rests and low == footing.down)
         searches = [] if waits else self._searches(state, footing, stands)
         missing.lost = contacts.tips(footing, deeper)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 from tarsus.control.contact.footing import Footing, holds
 from tarsus.control.limitation import Cause, Limitation, LimitationKind
@@ -256,10 +256,19 @@ class MissingGround:
             self._edge.way, self._again = self.obstacles.found, max(self._again, _AGAIN - 1)
         return start - foot
 
-    def sees(self, ground: GroundMap, rest: Sequence[complex], dt: float) -> None:
-        """Take note of holes at feet in the air and at rest footholds [m]; `dt` is the time since the last call [s]."""
+    def sees(self, ground: GroundMap, holes: Mapping[int, complex], rest: Sequence[complex], dt: float) -> None:
+        """Take note of holes at feet in the air, by leg, and at rest footholds [m].
+
+        Parameters
+        ----------
+        ground, holes, rest : GroundMap, mapping of int to complex, sequence of complex
+            The known ground; by leg, the foothold of a foot in the air that is in a hole; rest footholds; in the
+            heading frame [m].
+        dt : float
+            Time since the last call [s].
+        """
         self._over = any(leads_towards(at, self._edge.way) and ground.is_hole(at) for at in rest)
-        for leg, place in ground.holes.items():
+        for leg, place in holes.items():
             self._edge.way, self._edge.hole = direction(place - rest[leg], rest[leg]), place
             self._cause, self._again = Cause("no ground within reach at its next foothold", self._names[leg]), _AGAIN
         if not self.places:

@@ -1,4 +1,4 @@
-"""Ground map: ground heights from a sensor, tied to the standing feet, and the footholds that are chosen on them."""
+"""Ground map: ground heights from a sensor, tied to the standing feet."""
 
 from __future__ import annotations
 
@@ -12,13 +12,10 @@ import numpy as np
 
 from tarsus.control.readings import RollPitch, ValidReadings
 from tarsus.control.terrain.reach import Reach
-from tarsus.control.transition.foothold_transfer import FootholdTransfer
 from tarsus.control.walk.felt_feet import GroundUnder
 from tarsus.control.walk.state import GaitState
 from tarsus.gait.foot_plane import FootPlane, fitted_plane
-from tarsus.gait.foot_polygons import NORMALS_CONJUGATE
-from tarsus.gait.ground_heights import TRIED, GroundHeights, better_foothold, is_steep, lowest_near, on_way
-from tarsus.gait.stance.stance_geometry import SWING_HEIGHT
+from tarsus.gait.ground_heights import GroundHeights, is_steep, lowest_near, on_way
 
 if TYPE_CHECKING:
     from jaxtyping import Shaped
@@ -30,15 +27,8 @@ _Feet: TypeAlias = Sequence[tuple[complex, float]]
 
 # How fast the slope of the plane follows the feet [1/s].
 _SLOPE_RATE = 2.0
-# Least share of the distance at which a foot may be put down that is kept for its stroke.
-_STROKE_SHARE = 0.65
-# How far the body would be lowered to reach deep ground, and depth from which on ground is a hole even if legs reach
-# it, both over the body height.
-_LOWERED, _DEEPEST = 0.35, 1.2
 # Horizontal error of the known heights that is allowed for [m].
 _OFF = 0.03
-# Swing phase up to which a foothold is chosen, and up to which one in a hole is replaced.
-_CHOOSING, _CHOOSING_AGAIN = 0.3, 0.45
 # Distance from a hole up to which a foothold counts as in it [m]: one farther away is preferred where there is any.
 _EDGE = 0.012
 # Downward slope above which low ground is behind an edge; down less steep ground, the robot walks until legs reach it.
@@ -49,7 +39,6 @@ _CLEAR = 0.015
 _UNDER = (np.linspace(-1.2, 1.2, 9)[:, None] + 1j * np.linspace(-1.0, 1.0, 5)).ravel()
 # Places of a foot's next footholds ahead of its rest foothold, in strokes.
 _NEXT = np.array([0.5, 1.0])
-_ALONG_TRIED = (NORMALS_CONJUGATE * TRIED[:, None]).real
 
 
 class GroundMap:
@@ -69,21 +58,14 @@ class GroundMap:
         The plane through the standing feet.
     given : bool
         Whether any heights are known.
-    beside : dict of int to complex
-        By leg, offset from the foothold of its step at which a foot in the air is put down, in the heading frame [m].
-    holes : dict of int to complex
-        By leg, the foothold of a foot in the air that would be put down into a hole, in the heading frame [m].
-    crossing : set of int
-        Legs whose feet in the air cross a hole on their way.
+    deepest : float
+        How far below the plane of the feet ground may be that they step on [m].
     """
 
     def __init__(self, *, scale: float = 1.0) -> None:
         self._scale = scale
-        self.plane, self.given, self.beside = FootPlane(), False, dict[int, complex]()
-        self.holes, self.crossing = dict[int, complex](), set[int]()
+        self.plane, self.given, self.deepest = FootPlane(), False, math.inf
         self._seen: GroundHeights | None = None
-        # How far below the plane of the feet ground may be that they step on [m].
-        self._deepest = math.inf
         # Middle of the grid and its x axis, in G.
         self._middle, self._axis = 0j, 1 + 0j
         # The heading frame: its origin and x axis in G, its inclination, and its height among those of the grid [m].
@@ -150,14 +132,14 @@ class GroundMap:
 
     def expected(self, places: Shaped[np.ndarray, "..."]) -> Shaped[np.ndarray, "..."]:
         """Return the heights at which the ground is expected at places; in a hole, those of the plane [m]."""
-        found, level = self._lies(places), np.asarray(self.plane.at(places))
-        return np.where(found > self._floor(places), found, level)
+        found, level = self.lies(places), np.asarray(self.plane.at(places))
+        return np.where(found > self.floor(places), found, level)
 
-    def _floor(self, places: Shaped[np.ndarray, "..."]) -> Shaped[np.ndarray, "..."]:
+    def floor(self, places: Shaped[np.ndarray, "..."]) -> Shaped[np.ndarray, "..."]:
         """Return the heights below which known ground is a hole at places [m]; a rising plane does not raise them."""
-        return np.asarray(np.minimum(self.plane.at(places), self.plane.height) - self._deepest)
+        return np.asarray(np.minimum(self.plane.at(places), self.plane.height) - self.deepest)
 
-    def _lies(self, places: Shaped[np.ndarray, "..."]) -> Shaped[np.ndarray, "..."]:
+    def lies(self, places: Shaped[np.ndarray, "..."]) -> Shaped[np.ndarray, "..."]:
         """Return the known heights at places, those of holes too, and those of the plane where nothing is known [m]."""
         known = self._known(places) - self._height - self._rise(places)
         return np.where(np.isnan(known), np.asarray(self.plane.at(places)), known)
@@ -174,52 +156,14 @@ class GroundMap:
         found = lowest_near(self.expected, np.array(place), within=self._scale * _OFF) if self.given else math.inf
         return min(float(found), float(self.plane.at(place)))
 
-    def choose(self, state: GaitState, reach: Reach, footholds: FootholdTransfer) -> None:
-        """Choose footholds for feet that have lifted off, once in each swing, and again in place of a hole.
-
-        Parameters
-        ----------
-        state, reach : GaitState, Reach
-            The gait state; strokes, and the heights between which legs reach them.
-        footholds : FootholdTransfer
-            How far from their rest footholds feet may be put down.
-        """
-        if not self.given:
-            return
-        height, swing_height = state.posture.value[[2, SWING_HEIGHT]].tolist()
-        self._deepest = min(_LOWERED * height - max(reach.lowest), _DEEPEST * height)
-        highest = reach.highest_stand(swing_height)
-        for leg, (down, phase) in enumerate(zip(state.down.tolist(), state.swing_phase.tolist(), strict=True)):
-            if down:
-                self.beside.pop(leg, None)
-                self.holes.pop(leg, None)
-                self.crossing.discard(leg)
-                continue
-            start, end = (state.in_heading(complex(at[leg])) for at in (state.foot, state.foothold))
-            again = leg in self.beside and phase < _CHOOSING_AGAIN and (leg in self.holes or self.is_hole(end))
-            if again or (leg not in self.beside and 0 < phase < _CHOOSING):
-                kept = np.abs((NORMALS_CONJUGATE * reach.strokes[leg]).real) / 2
-                slack = footholds.placement_bounds[leg] - kept.clip(_STROKE_SHARE * footholds.placement_radii[leg])
-                # A hole that is found only later in a swing is not reported: the foot goes down soon.
-                held, end = leg in self.holes or leg not in self.beside, end - self.beside.get(leg, 0j)
-                self.holes.pop(leg, None)
-                allowed = (slack.clip(0.0) >= _ALONG_TRIED).all(axis=1)
-                room = (reach.lowest[leg], highest[leg], reach.highest[leg])
-                self.beside[leg] = better_foothold(self._lies, self.plane.at, start, end, allowed=allowed, reach=room)
-                place = end + self.beside[leg]
-                if held and self.is_hole(place):
-                    self.holes[leg] = end
-                if on_way(self._lies, start, place).min() < self._floor(np.array(place)):
-                    self.crossing.add(leg)
-
     def is_hole(self, place: complex) -> bool:
         """Return whether the known ground at a place, or close to it, is too low to stand on."""
         if not self.given:
             return False
-        lowest = lowest_near(self._lies, np.array(place), within=self._scale * _EDGE)
-        if lowest >= self._floor(np.array(place)):
+        lowest = lowest_near(self.lies, np.array(place), within=self._scale * _EDGE)
+        if lowest >= self.floor(np.array(place)):
             return False
-        way = on_way(self._lies, 0j, place)
+        way = on_way(self.lies, 0j, place)
         found = np.append(way, lowest)
         return bool((found[:-2] - found[2:]).max() > _CLIFF * abs(place) * 2 / (len(way) - 1))
 
