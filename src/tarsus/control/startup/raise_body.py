@@ -62,14 +62,7 @@ def raise_body(
     for station, next_height in zip(stations, [*(s.height for s in stations[1:]), height], strict=True):
         last = station is stations[-1]
         spots = feet * [1, 1, 0] if last else footholds_straight_out(builder.robot, station.distances, 0.0)
-        spots = spots - [0, 0, builder.height]
-        exact = last and builder.height == height
-        angles = stance if exact else inverse_kinematics(builder.robot, spots).require().angles
-        if builder.belly:
-            builder = builder.move_legs("place feet", angles, landed=True)
-        else:
-            builder = _change_footholds(builder, angles)
-        builder = _at_height(builder, next_height)
+        builder = _over_spots(builder, spots, next_height)
     error = float(np.abs(builder.angles - stance).max())
     if error > _ANGLE_TOLERANCE:
         raise UnreachableError(
@@ -117,14 +110,17 @@ def lower_body(builder: SequenceBuilder) -> SequenceBuilder:
     feet = builder.body.inverse() @ builder.feet
     stations = foothold_stations(robot, lowest, builder.height, feet, swing_height=builder.swing_height)
     for station in stations[::-1]:
-        spots = footholds_straight_out(robot, station.distances, -builder.height)
-        angles = inverse_kinematics(robot, spots).require().angles
-        builder = _at_height(_change_footholds(builder, angles), station.height)
+        builder = _over_spots(builder, footholds_straight_out(robot, station.distances, 0.0), station.height)
     return builder.lie_down()
 
 
-def _at_height(builder: SequenceBuilder, height: float) -> SequenceBuilder:
-    """Move the body vertically to a height."""
+def _over_spots(builder: SequenceBuilder, spots: Float[np.ndarray, "legs 3"], height: float) -> SequenceBuilder:
+    """Place the feet on spots of the ground, x and y in B, then move the body vertically to a height."""
+    angles = inverse_kinematics(builder.robot, spots - [0, 0, builder.height]).require().angles
+    if builder.belly:
+        builder = builder.move_legs("place feet", angles, landed=True)
+    else:
+        builder = _change_footholds(builder, angles)
     if height == builder.height:
         return builder
     x, y, _ = builder.body.position
