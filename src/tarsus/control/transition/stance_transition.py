@@ -84,20 +84,15 @@ class WalkParameters:
         if abs(gap[SWING_HEIGHT]) > _TOLERANCE:
             asked = self.swing_height
             found.append(cause.limitation(LimitationKind.SWING_HEIGHT, asked=asked, granted=asked - float(gap[-1])))
-        found += self._body_shortfalls(gap[:SWING_HEIGHT], cause)
+        missing = [axis for axis in range(SWING_HEIGHT) if abs(gap[axis]) > _TOLERANCE]
+        if missing:
+            # Where only axes commanded to be 0 are missing, nothing of the pose counts as met.
+            met = [1 - abs(float(gap[axis]) / self.body[axis]) for axis in missing if self.body[axis]]
+            found.append(cause.limitation(LimitationKind.BODY, asked=1.0, granted=max(min(met, default=0.0), 0.0)))
         width = self.stance_width
         if not found and abs(width - stance_width) > _TOLERANCE:
             found.append(cause.limitation(LimitationKind.STANCE_WIDTH, asked=width, granted=stance_width))
         return found
-
-    def _body_shortfalls(self, gap: Float[np.ndarray, "6"], cause: Cause) -> list[Limitation]:
-        """Return what is missing of the body pose."""
-        missing = [axis for axis in range(SWING_HEIGHT) if abs(gap[axis]) > _TOLERANCE]
-        if not missing:
-            return []
-        # Where only axes commanded to be 0 are missing, nothing of the pose counts as met.
-        met = [1 - abs(float(gap[axis]) / self.body[axis]) for axis in missing if self.body[axis]]
-        return [cause.limitation(LimitationKind.BODY, asked=1.0, granted=max(min(met, default=0.0), 0.0))]
 
     def rejected(self, now: WalkParameters, posture: Float[np.ndarray, "7"] | None, cause: Cause) -> list[Limitation]:
         """Return the limitations of parameters that are rejected as a whole.
