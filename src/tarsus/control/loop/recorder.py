@@ -67,20 +67,18 @@ class Recorder:
         """
         if command is self._command:
             return
-        for number, limitation in self._limited:
-            new, old = (_part(each, limitation.kind) for each in (command, self._command))
+        for number, unmet in self._unmet_now.items():
+            new, old = (_part(each, unmet.limitation.kind) for each in (command, self._command))
             if new is not None and new != old:
-                self._note_unmet(number, limitation)
+                self._unmet[number] = unmet
         self._command = command
 
     @property
-    def _limited(self) -> list[tuple[int, Limitation]]:
-        """Limitations of the last two ticks, with the numbers of their events: some come and go from tick to tick."""
-        lately = self._times[-2:][0]
-        return [known for known in self._present.values() if self._events[known[0]].until >= lately]
-
-    def _note_unmet(self, number: int, limitation: Limitation) -> None:
-        self._unmet[number] = Unmet(self._events[number].time, self.time, limitation)
+    def _unmet_now(self) -> dict[int, Unmet]:
+        """What is limited in the last two ticks, by the number of its event: some come and go from tick to tick."""
+        lately, events = self._times[-2:][0], self._events
+        known = [each for each in self._present.values() if events[each[0]].until >= lately]
+        return {number: Unmet(events[number].time, self.time, limitation) for number, limitation in known}
 
     def tick(self, time: float, output: ControlOutput, readings: SensorReadings) -> None:
         """Note a tick.
@@ -119,9 +117,7 @@ class Recorder:
 
     def recording(self, *, name: str, rate: float) -> Recording:
         """Return the recording of the run, with its name and its nominal number of ticks per second [1/s]."""
-        for number, limitation in self._limited:
-            self._note_unmet(number, limitation)
-        outputs = self._outputs
+        outputs, unmet = self._outputs, self._unmet | self._unmet_now
         twist = np.array([output.twist for output in outputs])
         guard = tuple(output.guard for output in outputs)
         # What is measured before an output shows how the angles of the last output were executed.
@@ -142,7 +138,7 @@ class Recorder:
             gaits=tuple(output.gait.name for output in outputs),
             guard=guard if any(guard) else (),
             interventions=dict(Counter(found.kind for output in outputs[1:] for found in output.interventions)),
-            unmet=tuple(sorted(self._unmet.values(), key=lambda each: each.time)),
+            unmet=tuple(sorted(unmet.values(), key=lambda each: each.time)),
             events=tuple(self._events),
         )
 
