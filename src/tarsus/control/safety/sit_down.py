@@ -76,7 +76,9 @@ class SitDown:
                 return True
             # Feet that cannot be set down keep their height in B.
             self._swing_heights, self._speed = np.zeros_like(self._swing_heights), 0.0
-        if not self._move(np.ones(self._robot.legs), self._height() - self._bounds.sit_height, dt):
+        # The lowest point of body and legs, feet excluded.
+        lowest = min(self._underside, float((self._points()[:, :3] @ self._up).min()))
+        if not self._move(np.ones(self._robot.legs), lowest - self._ground - self._bounds.sit_height, dt):
             return False
         self._ground += self._speed * dt
         return True
@@ -116,8 +118,3 @@ class SitDown:
 
     def _points(self) -> Float[np.ndarray, "m n 3"]:
         return np.asarray(forward_kinematics(self._robot, self._angles()))
-
-    def _height(self) -> float:
-        """Return the height over the ground of the lowest point of body and legs, feet excluded [m]."""
-        lowest = min(self._underside, float((self._points()[:, :3] @ self._up).min()))
-        return lowest - self._ground
