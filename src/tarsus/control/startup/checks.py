@@ -13,6 +13,7 @@ from tarsus.kinematics.leg import forward_kinematics
 from tarsus.kinematics.leg_path import lifts_off
 from tarsus.kinematics.mass import centre_of_mass
 from tarsus.kinematics.polygon import hull_margin
+from tarsus.kinematics.pose import Pose
 from tarsus.kinematics.underside import underside_points
 from tarsus.robot.robot import JOINTS
 
@@ -63,16 +64,16 @@ def check_stage(stage: Stage, margin: float) -> None:
     TarsusError
         If the stability margin is too small.
     """
-    _check_reach(stage)
-    _check_limits(stage)
     body = stage.body_at(GRID)
+    _check_reach(stage, body)
+    _check_limits(stage, body)
     points = body @ forward_kinematics(stage.robot, stage.table)
     _check_ground(stage, points, (body @ underside_points(stage.robot)[None])[..., 2])
     _check_lift_off(stage, points[..., 3, :])
-    _check_margin(stage, margin)
+    _check_margin(stage, body, margin)
 
 
-def _check_reach(stage: Stage) -> None:
+def _check_reach(stage: Stage, body: Pose) -> None:
     """Refuse a stage in which a foot cannot follow its Cartesian path."""
     fails = np.isnan(stage.table).any(-1)
     # Near the ends of the range of angles, the solution of a leg's branch may differ from the angles it starts with.
@@ -80,16 +81,14 @@ def _check_reach(stage: Stage) -> None:
     if not fails.any():
         return
     index, leg = (int(i) for i in np.argwhere(fails)[0])
-    fraction = GRID[index : index + 1]
-    body = stage.body_at(fraction)[0]
-    feet = np.where(stage.cartesian[:, None], stage.feet_at(fraction)[0], stage.feet)
-    solution = inverse_kinematics(stage.robot, feet, body)
+    feet = np.where(stage.cartesian[:, None], stage.feet_at(GRID)[index], stage.feet)
+    solution = inverse_kinematics(stage.robot, feet, body[index])
     straight = f"{stage.robot.leg_names[leg]} would be straight, or folded back on itself"
     reason = solution.explain_leg((leg,)) if solution.reach[leg] else straight
-    raise UnreachableError(f"{stage.name}: at body height {body.position[2] * 1000:.1f} mm, {reason}")
+    raise UnreachableError(f"{stage.name}: at body height {body.position[index, 2] * 1000:.1f} mm, {reason}")
 
 
-def _check_limits(stage: Stage) -> None:
+def _check_limits(stage: Stage, body: Pose) -> None:
     """Refuse a stage in which a joint leaves its limits, or moves further beyond a limit."""
     excess = limit_excess(stage)
     increases = np.diff(excess, axis=0) > _ANGLE_TOLERANCE
@@ -97,10 +96,9 @@ def _check_limits(stage: Stage) -> None:
         return
     _, leg, joint = (int(i) for i in np.argwhere(increases)[0])
     worst = int(np.argmax(excess[:, leg, joint]))
-    height = float(stage.body_at(GRID[worst : worst + 1]).position[0, 2])
     low, high = np.degrees(stage.robot.limits[leg, joint])
     raise UnreachableError(
-        f"{stage.name}: at body height {height * 1000:.1f} mm, the {JOINTS[joint]} of leg "
+        f"{stage.name}: at body height {body.position[worst, 2] * 1000:.1f} mm, the {JOINTS[joint]} of leg "
         f"{stage.robot.leg_names[leg]} would be at {np.degrees(stage.table[worst, leg, joint]):.1f} deg, "
         f"{np.degrees(excess[worst, leg, joint]):.1f} deg beyond its limits of {low:.1f} to {high:.1f} deg"
     )
@@ -128,10 +126,10 @@ def _check_lift_off(stage: Stage, feet: Float[np.ndarray, "n legs 3"]) -> None:
             )
 
 
-def _check_margin(stage: Stage, margin: float) -> None:
+def _check_margin(stage: Stage, body: Pose, margin: float) -> None:
     """Refuse a stage in which the centre of mass comes too near the edge of the support polygon."""
     supports = np.concatenate([stage.feet[stage.contacts], stage.supports])
-    com = stage.body_at(GRID[::_MARGIN_INTERVAL]) @ centre_of_mass(stage.robot, stage.table[::_MARGIN_INTERVAL])
+    com = body[::_MARGIN_INTERVAL] @ centre_of_mass(stage.robot, stage.table[::_MARGIN_INTERVAL])
     least = float(hull_margin(supports[:, :2], np.ones(len(supports), dtype=bool), com[:, :2]).min())
     if least >= margin - _MARGIN_TOLERANCE:
         return
