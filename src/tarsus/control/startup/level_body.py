@@ -99,7 +99,7 @@ def level_body(builder: SequenceBuilder, target: BodyTarget, stance: Float[np.nd
         folded = np.where((free & ~near_ground)[:, None], folded_pose(builder.robot), builder.angles)
         builder = builder.move_legs("retract free legs", folded, landed=False)
     else:
-        builder = _place_feet(builder, target, stance, free=free, blocking=blocking)
+        builder = _place_feet(builder, target, stance, blocking)
     name = "lie down" if target.belly else "level body"
     builder = builder.move_body(name, target, builder.contacts | near_ground)
     return builder.lie_down() if target.belly else builder
@@ -113,20 +113,15 @@ def _can_follow(builder: SequenceBuilder, target: BodyTarget) -> Bool[np.ndarray
 
 
 def _place_feet(
-    builder: SequenceBuilder,
-    target: BodyTarget,
-    stance: Float[np.ndarray, "legs 3"],
-    *,
-    free: Bool[np.ndarray, "legs"],
-    blocking: Bool[np.ndarray, "legs"],
+    builder: SequenceBuilder, target: BodyTarget, stance: Float[np.ndarray, "legs 3"], blocks: Bool[np.ndarray, "legs"]
 ) -> SequenceBuilder:
-    """Place the free legs on footholds that they can keep while the body moves, then the legs that block the motion.
+    """Place the legs in the air on footholds that they can keep while the body moves, then those that block its motion.
 
-    `free` are legs in the air, `blocking` those on the ground that cannot stay where they are.
+    `blocks` are the legs on the ground that cannot stay where they are.
     """
     choices = _footholds(builder, target, stance)
     folded = folded_pose(builder.robot)
-    for leg in np.flatnonzero(free).tolist():
+    for leg in np.flatnonzero(~(builder.contacts | blocks)).tolist():
         # A leg without a foothold is retracted; if that is not possible either, it stays in the air as it is.
         after = _place(builder, leg, choices[leg])
         if after is None:
@@ -134,7 +129,7 @@ def _place_feet(
                 after = _move_leg(builder, leg, folded[leg], "retract", landed=False)
         builder = after or builder
     # A robot that initially rests with a small stability margin is not required to have a greater one.
-    remaining, margin = np.flatnonzero(blocking).tolist(), min(builder.margin, builder.initial_margin)
+    remaining, margin = np.flatnonzero(blocks).tolist(), min(builder.margin, builder.initial_margin)
     while found := next(((leg, to) for leg in remaining if (to := _place(builder, leg, choices[leg], margin))), None):
         placed, builder = found
         remaining.remove(placed)
