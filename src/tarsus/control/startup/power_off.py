@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from tarsus.arrays import Array, read_only
+from tarsus.control.startup.builder import SequenceBuilder
 from tarsus.control.startup.initial_state import lying_state, measured_state
 from tarsus.kinematics.leg_path import LegFreeSpace
 from tarsus.representation import represented
@@ -68,10 +69,7 @@ def power_off_order(robot: Robot, angles: Float[Array, "legs 3"]) -> PowerOffOrd
         If the robot does not lie on its belly.
     """
     state = lying_state(measured_state(robot, angles), purpose="switching its joints off")
-    robot = state.robot
-    drop = np.zeros((robot.legs, 3))
-    for leg in range(robot.legs):
-        drop[leg, 1:] = _drops(robot, leg, LegFreeSpace.of(robot, leg, state.body), state.angles[leg])
+    drop = np.array([(0.0, *_drops(state, leg)) for leg in range(robot.legs)])
     return PowerOffOrder(
         order=tuple((leg, joint) for joint in range(3) for leg in range(robot.legs)),
         drop=read_only(drop),
@@ -84,12 +82,12 @@ def power_off_order(robot: Robot, angles: Float[Array, "legs 3"]) -> PowerOffOrd
     )
 
 
-def _drops(robot: Robot, leg: int, space: LegFreeSpace, angles: Float[np.ndarray, "*#batch 3"]) -> tuple[float, float]:
+def _drops(state: SequenceBuilder, leg: int) -> tuple[float, float]:
     """Return the drop of the leg once its femur is off, and then that of its knee once the tibia is off too [m]."""
-    coxa, femur, tibia = angles
-    low = min(float(robot.limits[leg, 1, 0]), femur)
+    coxa, femur, tibia = state.angles[leg]
+    low = min(float(state.robot.limits[leg, 1, 0]), femur)
     turned = np.array([[coxa, angle, tibia] for angle in np.arange(femur, low - _ANGLE_STEP, -_ANGLE_STEP)])
-    heights = space.heights(turned)
+    heights = LegFreeSpace.of(state.robot, leg, state.body).heights(turned)
     # The leg turns about the femur axis until knee or foot touches the ground, or until it is at its lowest.
     stops = np.flatnonzero((heights.min(-1)[1:] < 0) | (np.diff(heights.mean(-1)) > 0))
     last = int(stops[0]) if stops.size else len(turned) - 1
