@@ -251,4 +251,4 @@ class Guard:
         self._time_at_rest = self._time_at_rest + step if self._joints.at_rest and not gap else 0.0
         if self._policy == "sit" and not self._seated and self._time_at_rest > self.bounds.sit_delay:
             self.state = GuardState.SITTING
-            self._sit_down = SitDown(self._robot, self.bounds, self._joints, stance=self._feet.stance, up=self._feet.up)
+            self._sit_down = SitDown(self._robot, self.bounds, self._joints, self._feet)

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from tarsus.control.safety.bounds import GuardBounds
+from tarsus.control.safety.feet_monitor import FeetMonitor
 from tarsus.control.safety.joint_monitor import JointMonitor
-from tarsus.control.safety.scalar_geometry import Point
 from tarsus.kinematics.leg import forward_kinematics, leg_jacobian
 from tarsus.kinematics.rest import CORNERS
 from tarsus.robot.robot import Robot
@@ -39,24 +39,20 @@ class SitDown:
         A single robot.
     bounds, joints : GuardBounds, JointMonitor
         The guard's bounds; the joints, at rest.
-    stance : list of bool or None
-        Feet in stance; None if all are.
-    up : Point
-        Upward direction in B.
+    feet : FeetMonitor
+        The feet in stance, all of them where contacts were not given; the upward direction.
     """
 
-    def __init__(
-        self, robot: Robot, bounds: GuardBounds, joints: JointMonitor, *, stance: list[bool] | None, up: Point
-    ) -> None:
+    def __init__(self, robot: Robot, bounds: GuardBounds, joints: JointMonitor, feet: FeetMonitor) -> None:
         self._robot, self._bounds, self._joints = robot, bounds, joints
-        self._up = np.array(up)
+        self._up = np.array(feet.up)
         # Points of the body in B that include its lowest point in any attitude.
         corners = robot.mount_position if robot.body_size is None else CORNERS * robot.body_size
         self._underside = float((corners @ self._up).min())
         # Commanded feet in B, and the heights of the swing feet over the ground.
         self._feet = self._points()[:, 3]
         heights = self._feet @ self._up
-        stands = np.ones(robot.legs, dtype=bool) if stance is None else np.array(stance)
+        stands = np.ones(robot.legs, dtype=bool) if feet.stance is None else np.array(feet.stance)
         self._ground = float(heights[stands].mean()) if stands.any() else math.inf
         self._swing_heights = np.where(stands, 0.0, heights - self._ground) if stands.any() else np.zeros(robot.legs)
         self._speed = 0.0
