@@ -71,7 +71,7 @@ def planned(walk: WalkComponents, tick: TickState, command: Command, dt: float) 
         The state; what is commanded; length of the tick [s].
     """
     state = walk.transitions.advance(partial(_plan_transition, walk, tick.gait), tick)
-    walk.foot_targets.set_targets(command, state.posture.value, walk.transitions.current.parameters.sway, dt)
+    walk.foot_targets.set_targets(command, state, walk.transitions.current.parameters.sway, dt)
     return tick if state is tick.gait else tick._replace(gait=state)
 
 

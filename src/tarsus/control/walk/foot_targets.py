@@ -132,17 +132,15 @@ class FootTargets:
         self._motions = stopped | {leg: self._motions.get(leg) or _Motion.beginning(state, leg) for leg in excluded}
         self._excluded, self.limitations = excluded, []
 
-    def set_targets(
-        self, command: Command, posture: Float[np.ndarray, "13"], sway: tuple[float, ...], dt: float
-    ) -> None:
+    def set_targets(self, command: Command, state: GaitState, sway: tuple[float, ...], dt: float) -> None:
         """Set the targets of the feet, as far towards the commanded points as their legs reach.
 
         Parameters
         ----------
         command : Command
             A point in it holds until the next one; a velocity for this tick.
-        posture, sway : array, shape (13,), tuple of float
-            Posture of the body; amplitudes of its sway, throughout which the feet have to reach their targets.
+        state, sway : GaitState, tuple of float
+            The state of the walk; amplitudes of the body's sway, throughout which the feet have to reach their targets.
         dt : float
             Length of the tick [s].
         """
@@ -152,7 +150,7 @@ class FootTargets:
         velocities = command.foot_velocities or {}
         points = {**self._points, **(command.foot_targets or {})}
         self._points = {leg: point for leg, point in points.items() if point is not None and leg not in velocities}
-        postures = sway_extremes(posture[: SWING_HEIGHT + 1], sway)
+        postures = sway_extremes(state.posture.value[: SWING_HEIGHT + 1], sway)
         for leg in self._excluded:
             motion = self._motions[leg]
             start = motion.position.value
