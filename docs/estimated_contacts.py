@@ -17,7 +17,7 @@ from page_tables import Several, write_tables
 from rough_ground import GROUNDS, PAGE, RANDOM, ROBOTS, WAY
 from tarsus.simulation import SensorSuite, SimulatedPlant
 
-GROUND, DT, TOUCHES = ("flat", "smooth60", "blocks40", "step+25"), 0.01, 0.5
+GROUND, DT, TOUCHES = ("flat", "smooth60", "blocks40", "step+25", "ramp+10", "ramp-10"), 0.01, 0.5
 JOINTS = dataclasses.replace(SensorSuite.named("smart"), attitude=SensorSuite.named("hobby").attitude)
 
 

@@ -302,6 +302,45 @@ def test_the_body_shifts_over_feet_that_would_not_hold_it_as_others_lift_off(ahe
     assert float(controller.body.position[0]) - before > 0.09
 
 
+@pytest.mark.parametrize("ahead", [(0, 2, 4), (1, 3, 5)])
+def test_a_robot_that_was_carried_goes_on_where_those_feet_hold_it_that_are_to_lift_off(ahead):
+    controller = WalkController(tarsus.load_robot("makeyourpet"))
+    seen = list[bool]()
+    for tick in range(400):
+        readings = SensorReadings(contacts=controller.contacts * (not 30 <= tick < 130), attitude=(0.0, 0.0))
+        controller.step((0.1, 0.0, 0.0), 0.01, readings)
+        if tick == 120:
+            # Without those that are due, the feet do not hold the robot.
+            state = controller._tick.gait
+            foot = state.foot + 0.13 * np.isin(np.arange(6), ahead)
+            controller._tick = controller._tick._replace(gait=state._replace(foot=foot, foothold=foot))
+        seen.append(controller._walk.ground.condition.carried)
+    assert all(seen[100:130])
+    assert not any(seen[200:])
+
+
+def test_after_a_long_wait_fewer_feet_lift_off():
+    feet = [1 + 1j, 1j, -1 + 1j, -1 - 1j, -1j, 1 - 1j]
+    support, footing = Support(), Footing(feet, [True] * 6, 0.9 + 0j, 0.1)
+    for _ in range(10):
+        support.step(stays=False, lifts=True, dt=0.2, swing_time=0.5)
+        support.lift_fewer([*range(6)], [1, 3, 5], footing)
+        assert support.waits
+        assert support.stay == []
+    for _ in range(3):
+        support.step(stays=False, lifts=True, dt=0.2, swing_time=0.5)
+    # Without the front right foot, the others would not hold the robot.
+    support.lift_fewer([*range(6)], [1, 3, 5], footing)
+    assert support.stay == [5]
+    assert not support.waits
+    support.step(stays=False, lifts=True, dt=0.2, swing_time=0.5)
+    support.lift_fewer([0, 3, 5], [3], footing)
+    assert support.stay == [3]
+    assert support.waits
+    support.lift_fewer([*range(6)], [], footing)
+    assert support.stay == []
+
+
 @pytest.mark.parametrize(("feet", "shifts"), [([2.0, 2.0 + 1j, 3.0], 1.0), ([-2.0, -2.0 + 1j, -3.0], -1.0)])
 def test_a_body_shifts_towards_feet_and_not_far(feet, shifts):
     support, footing, moved = Support(), Footing([complex(foot) for foot in feet], [True] * 3, 0j, 0.1), 0j

@@ -496,6 +496,15 @@ def test_a_robot_is_carried_until_its_feet_have_held_it_for_a_while():
     assert [tick for tick, carried in enumerate(seen) if carried] == list(range(22, 44))
 
 
+def test_a_robot_whose_legs_cease_to_bear_it_is_carried_until_they_do_again():
+    condition, seen = BodyCondition(), []
+    for tick in range(20):
+        condition.step([True] * 6, 0.0, 0.04, held=True, lifted=tick == 10)
+        seen.append(condition.carried)
+    assert [tick for tick, carried in enumerate(seen) if carried] == list(range(10, 15))
+    assert not condition.limitations
+
+
 @pytest.mark.no_cover
 @pytest.mark.parametrize(("name", "ground", "seed"), [("strider", "ramp+20", 8), ("phantomx", "ramp+17", 3)])
 def test_a_robot_that_is_put_down_on_a_slope_becomes_level_and_walks_on(name, ground, seed):

@@ -133,9 +133,9 @@ def test_servos_that_are_slower_than_those_of_the_file_stop_no_swing(dt):
     assert 0.01 < estimator.lag < 0.06
 
 
-def estimated(measure, *, seconds=6.0):
+def estimated(measure, *, seconds=6.0, estimator=None):
     """The estimator, and contacts and feet that should stand in each tick, of angles that are measured like this."""
-    controller, estimator, found = tarsus.WalkController(STRIDER), JointContacts(STRIDER), []
+    controller, estimator, found = tarsus.WalkController(STRIDER), estimator or JointContacts(STRIDER), []
     for tick in range(round(seconds / DT)):
         angles = controller.step((0.1, 0.0, 0.0), DT)
         state = controller._tick.gait
@@ -168,6 +168,39 @@ def test_a_robot_that_its_legs_do_not_bear_any_more_has_unknown_contacts_until_t
     assert all(contacts is not None for contacts, _, _ in found[300:340])
     assert all(contacts is None for contacts, _, _ in found[370:400])
     assert all(contacts is not None for contacts, _, _ in found[550:])
+
+
+def test_legs_that_cease_to_bear_the_robot_tell_so_once():
+    joints, told = JointContacts(STRIDER), list[float]()
+
+    def lifted(time, state):
+        told.extend([time] * joints.unborne)
+        return sagging(time, state) * (time < 3.0)
+
+    estimated(lifted, estimator=joints)
+    assert told == [pytest.approx(3.5, abs=0.1)]
+
+
+def test_contacts_are_unknown_and_a_hole_is_forgotten_once_the_legs_cease_to_bear_the_robot(monkeypatch):
+    controller = tarsus.WalkController(STRIDER)
+    walks = [tarsus.SensorReadings(contacts=[True] * 6, attitude=(0.0, 0.0))] * 3
+    for readings in walks:
+        controller.step((0.1, 0.0, 0.0), DT, readings)
+    ground, loads = controller._walk.ground, controller._walk.ground._loads
+    ground.missing.tipped(0, 0.2 + 0.1j)
+
+    def lifted(*_):
+        loads.unborne = True
+
+    monkeypatch.setattr(loads, "contacts", lifted)
+    controller.step((0.1, 0.0, 0.0), DT, walks[0])
+    monkeypatch.undo()
+    assert not any(ground.contacts.estimator.known)
+    assert ground.condition.carried
+    for _ in range(60):
+        controller.step((0.1, 0.0, 0.0), DT, tarsus.SensorReadings(attitude=(0.0, 0.0)))
+    assert not ground.missing.refuses
+    assert not ground.condition.carried
 
 
 def test_a_foot_that_is_caught_leaves_contacts_known():

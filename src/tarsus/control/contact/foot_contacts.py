@@ -226,6 +226,10 @@ class FootContacts:
             return None
         return max(sinks, key=self.sunk.__getitem__)
 
+    def forget_open(self) -> None:
+        """Forget which switches are taken as stuck open: a robot that is carried is tilted by what carries it."""
+        self._evidence, self._landings, self._unheld = [0.0] * len(self._evidence), [0] * len(self._landings), 0.0
+
     def is_open(self, leg: int) -> bool:
         """Return whether a switch is taken as stuck open: other feet tell of a contact that it does not report."""
         return self._evidence[leg] > _OPEN_AFTER
@@ -254,9 +258,13 @@ class FootContacts:
         """Return whether a foot bears load; the shortest interruptions do not count."""
         return self._without[leg] <= _LOST or self.is_open(leg)
 
+    def is_in_contact(self, leg: int) -> bool:
+        """Return whether a foot's contact is measured now; True where nothing is known."""
+        return self._without[leg] <= 0.0 and leg not in self.hovering
+
     def touches(self, leg: int) -> bool:
-        """Return whether a foot bears load now; True where nothing is known."""
-        return (self._without[leg] <= 0.0 or self.is_open(leg)) and leg not in self.hovering
+        """Return whether a foot bears load now, also where its switch is taken as stuck open."""
+        return self.is_in_contact(leg) or (self.is_open(leg) and leg not in self.hovering)
 
     def feels(self, leg: int) -> bool:
         """Return whether a foot touches the side of an obstacle, or rests on it: estimated contacts do not tell."""

@@ -15,6 +15,8 @@ _PATIENCE = 0.3
 _GRACE = 0.15
 # Time of waiting after which feet in the air are put down: they may hang, as the walk no longer lowers them [s].
 _PUTS_DOWN = 1.0
+# Time of waiting after which fewer feet lift off than are due [s].
+_LONG = 2.5
 # Speed at which the body shifts over feet that do not hold it yet [m/s]; how far it shifts at most [m].
 _SHIFTS, _FARTHEST = 0.05, 0.08
 HALTING = 0.5
@@ -30,6 +32,8 @@ class Support:
         Rate of steps and twist, 0 to 1.
     waits, held : bool
         Whether feet that are due stay on the ground; whether the feet that bear load hold the robot.
+    stay : list of int
+        Legs whose feet miss their step, so that others can lift off.
     shift : complex
         Velocity of the body over its feet, in the heading frame [m/s].
     """
@@ -37,7 +41,7 @@ class Support:
     def __init__(self) -> None:
         self.pace, self.waits = 1.0, False
         self._waited = self._unsupported = 0.0
-        self._bearing, self.held = list[int](), False
+        self._bearing, self.held, self.stay = list[int](), False, list[int]()
         self.shift, self._shifted = 0j, 0.0
 
     @property
@@ -76,6 +80,23 @@ class Support:
             way = sum(footing.places[leg] for leg in legs) / len(legs) - footing.centre
             self.shift = scale * _SHIFTS * way / max(abs(way), 1e-9)
             self._shifted += abs(self.shift) * dt
+
+    def lift_fewer(self, bearing: list[int], due: list[int], footing: Footing) -> None:
+        """After a long wait, let those feet lift off without which the others hold the robot; the rest miss a step.
+
+        Parameters
+        ----------
+        bearing, due, footing : list of int, list of int, Footing
+            Legs whose feet bear load; legs whose feet are due to lift off, none for no change; all feet.
+        """
+        self.stay = []
+        if due and self._waited > _LONG:
+            for leg in due:
+                left = [other for other in bearing if other != leg]
+                if holds([footing.places[other] for other in left], footing.centre):
+                    bearing = left
+            self.stay = [leg for leg in due if leg in bearing]
+            self.waits = len(self.stay) == len(due)
 
     def step(self, *, stays: bool, lifts: bool, dt: float, swing_time: float, most: float = 1.0) -> None:
         """Decide for a tick.

@@ -133,7 +133,10 @@ class FeltGround:
         moves = self.missing.moving(state.in_heading(state.foot).tolist()) if self.missing.places else ()
         lands = [on and not (self.condition.carried or leg in moves) for leg, on in enumerate(lands)]
         self.contacts.step(measured, down, dt, count=ticks, lands=lands, leaving=leaving, rests=rests)
-        self.condition.step([*map(self.contacts.touches, range(len(down)))], valid.tilt, dt, held=self.support.held)
+        touches = [*map(self.contacts.is_in_contact, range(len(down)))]
+        if self._loads.unborne:
+            self.contacts.estimator.forget()
+        self.condition.step(touches, valid.tilt, dt, held=self.support.held, lifted=self._loads.unborne)
         centre = partial(self._middle, state)
         self.offsets = self._loads.offsets(valid, angles, state, dt, out=self._given[0], centre=centre)
         if self.missing.stranded and all(down):
@@ -238,12 +241,19 @@ class FeltGround:
         """Decide whether feet may lift off, and the pace of the walk; `due` is None while the robot stands."""
         missing, lifts, condition = self.missing, any(due or ()), self.condition
         waits = any((self.body.slope.holds, condition.carried, missing.refuses, missing.tips))
-        legs = [leg for leg, on in enumerate(footing.down) if on and not (leg in missing.places or (due and due[leg]))]
+        # No foot of a robot that is carried lifts off: all that bear load tell whether it has been put down.
+        leaves = [] if condition.carried else due
+        legs = [
+            leg for leg, on in enumerate(footing.down) if on and not (leg in missing.places or (leaves and leaves[leg]))
+        ]
         stays = (self.support.holds(legs, footing, anew=not self.body.since) and not (lifts and waits)) or due is None
         rests = all(on or leg in self._given[0] for leg, on in enumerate(footing.down))
         unheld = lifts and rests and not (stays or waits or missing.places)
         self.support.shift_over(legs if unheld else [], footing, dt, scale=self.body.reach.scale)
         self.support.step(stays=stays, lifts=lifts, dt=dt, swing_time=swing_time, most=missing.pace)
+        bearing = [leg for leg, on in enumerate(footing.down) if on]
+        leaving = [leg for leg, lift in enumerate(due or ()) if lift and leg not in self._given[0]]
+        self.support.lift_fewer(bearing, leaving if unheld else [], footing)
 
     @property
     def limitations(self) -> tuple[Limitation, ...]:

@@ -60,6 +60,7 @@ class GroundSearch:
         missing.turn_to(state.yaw)
         if condition.carried:
             missing.forget()
+            contacts.forget_open()
             ground.plane = FootPlane()
         contacts.hovering = hovering(state, contacts, depths)
         held = [condition.in_air or contacts.stands(leg) for leg in range(len(depths))]

@@ -37,7 +37,9 @@ class BodyCondition:
         """Whether the robot is held in the air, where its feet do not search for the ground."""
         return self.airborne > _IN_AIR
 
-    def step(self, touching: Sequence[bool], tilt: float | None, dt: float, *, held: bool) -> None:
+    def step(
+        self, touching: Sequence[bool], tilt: float | None, dt: float, *, held: bool, lifted: bool = False
+    ) -> None:
         """Take in the contacts and the tilt of a tick.
 
         Parameters
@@ -46,8 +48,9 @@ class BodyCondition:
             Which feet touch the ground; True where nothing is known.
         tilt : float or None
             Angle of the body against gravity [rad]; None where it is not measured.
-        dt, held : float, bool
-            Time since the last tick [s]; whether the feet in contact hold the robot.
+        dt, held, lifted : float, bool, bool
+            Time since the last tick [s]; whether the feet in contact hold the robot; whether its legs have ceased to
+            bear it, as joint angles tell.
         """
         self.airborne = 0.0 if any(touching) else self.airborne + dt
         self._held = self._held + dt if held else 0.0
@@ -56,7 +59,8 @@ class BodyCondition:
             self._time = self._time + dt if changes else 0.0
         if self._time > _LASTS:
             self.fallen, self._time = not self.fallen, 0.0
-        self.carried = self.in_air or self.fallen or (self.carried and self._held < _PUT_DOWN)
+        self._held *= not lifted
+        self.carried = self.in_air or self.fallen or lifted or (self.carried and self._held < _PUT_DOWN)
 
     @property
     def limitations(self) -> list[Limitation]:

@@ -83,6 +83,10 @@ class ContactEstimator:
         self.certain = [abs(odds) >= _BOUND for odds in self._odds]
         self.error = min(self._wrong / self._read, _GREATEST_ERROR)
 
+    def forget(self) -> None:
+        """Forget the readings so far: contacts are unknown until the next ones."""
+        self._ages, self.known = [math.inf] * len(self._ages), [False] * len(self._ages)
+
     def reads(self, leg: int) -> bool:
         """Return whether a foot probably bears load, and its last reading agrees."""
         return self.touching[leg] and self._last[leg][1]

@@ -47,15 +47,16 @@ class FootLoads:
 
     Attributes
     ----------
-    estimated : bool
-        Whether contacts are estimated from joint angles.
+    estimated, unborne : bool
+        Whether contacts are estimated from joint angles; whether these tell that the legs have just ceased to bear the
+        robot.
     """
 
     def __init__(self, robot: Robot, admittance: Admittance | None) -> None:
         self._weight = known_weight(robot)
         self._torques = FootForceEstimator(robot)
         self._joints = JointContacts(robot) if robot.has_masses and all(map(all, robot.servos)) else None
-        self.estimated, self._untold, self._silent = False, math.inf, 0.0
+        self.estimated, self.unborne, self._untold, self._silent = False, False, math.inf, 0.0
         # Zero offset of each load cell: what it measures without load [N].
         self._zeros = [0.0] * robot.legs
         self._filter = AdmittanceFilter(admittance, robot.legs) if admittance else None
@@ -74,7 +75,7 @@ class FootLoads:
         state, dt : GaitState, float
             The gait state; time since the last tick [s].
         """
-        self.estimated = False
+        self.estimated = self.unborne = False
         found: Contacts = valid.contacts
         if found is None and valid.forces is not None and self._weight:
             least, cells = _CONTACT_SHARE * self._weight, zip(valid.forces, self._zeros, strict=True)
@@ -82,7 +83,7 @@ class FootLoads:
         self._untold = self._untold + dt if found is None else 0.0
         if self._untold > _UNTOLD and valid.joint_angles is not None and self._joints is not None:
             found = self._joints.contacts(valid, commanded, state, dt)
-            self.estimated = found is not None
+            self.estimated, self.unborne = found is not None, self._joints.unborne
             self._silent = 0.0 if self.estimated else self._silent + dt * (not state.down.all())
         return found
 

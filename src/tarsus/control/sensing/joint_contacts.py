@@ -59,8 +59,8 @@ class JointContacts:
 
     Attributes
     ----------
-    lag : float
-        Learnt lag from a command to its effect [s].
+    lag, unborne : float, bool
+        Learnt lag from a command to its effect [s]; whether the legs have just ceased to bear the robot.
 
     Raises
     ------
@@ -89,7 +89,7 @@ class JointContacts:
         self._expected, self._since = deque[list[tuple[float, float]]](), 0.0
         longest = float((lengths + np.asarray(robot.geometry.tibia)).max())
         self._least = _LEAST_LOAD * known_weight(robot) * longest
-        self.lag, self._familiar, self._unborne = _LAG, False, 0.0
+        self.lag, self._familiar, self._unborne, self.unborne = _LAG, False, 0.0, False
         self._forget()
         # How long each foot has borne load in its present stance [s].
         self._borne = [2 * _LONG] * robot.legs
@@ -127,6 +127,7 @@ class JointContacts:
         borne = load > self._load / 2
         self._load += borne * _MEAN_RATE * dt * (load - self._load)
         self._unborne = (self._unborne + dt) * (not borne)
+        self.unborne = bool(self._unborne > _UNBORNE and self._familiar and self._load >= self._least)
         if self._unborne > _UNBORNE:
             self._forget()
         self._familiar = self._left < (_STRANGE if self._familiar else _FAMILIAR) * max(self._load, self._least)

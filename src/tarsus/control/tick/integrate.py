@@ -64,7 +64,7 @@ def _step_inputs(walk: WalkComponents, tick: TickState, dt: float) -> StepInputs
         placement_radii=footholds.placement_radii,
         admittance_offset=offsets,
         hold_feet=transitions.changes_gait or walk.ground.support.waits,
-        excluded=parameters.excluded,
+        excluded=(*parameters.excluded, *walk.ground.support.stay),
         unstepped=transitions.unstepped,
         shift=pose.shift,
         felt=felt,
