@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 from tarsus.control.contact.footing import Footing, off_commanded, sunk_at
 from tarsus.control.contact.tipping import Tipping
 from tarsus.control.felt.bearing import hovering, not_sunk
@@ -18,6 +20,9 @@ __all__ = ["GroundSearch"]
 
 # Speed above which a foot that goes down is not at the end of its reach, which itself sinks with the body [m/s].
 _FALLS = 0.1
+# Time after which a robot that was lifted may be found to tip, where contacts are estimated: until then it is put down,
+# and settles [s].
+_SETTLES = 8.0
 
 
 class GroundSearch:
@@ -35,7 +40,8 @@ class GroundSearch:
         self, body: BodyMotion, choice: FootholdChoice, condition: BodyCondition, missing: MissingGround
     ) -> None:
         self._body, self._choice, self._condition, self._missing = body, choice, condition, missing
-        self._tipping = Tipping(body.reach.scale)
+        # Time since the robot was lifted, as far as known [s].
+        self._tipping, self._lifted = Tipping(body.reach.scale), math.inf
 
     def step(
         self, state: GaitState, footing: Footing, footholds: FootholdTransfer, dt: float, *, rests: bool
@@ -69,12 +75,13 @@ class GroundSearch:
         waits = condition.carried or (rests and low == footing.down)
         searches = [] if waits else self._searches(state, footing, stands)
         missing.lost = contacts.tips(footing, deeper)
-        if contacts.estimated:
+        self._lifted = 0.0 if condition.carried else self._lifted + dt
+        if contacts.estimated and self._lifted > _SETTLES:
             self._tipping.step(footing, depths, tilt, dt)
             missing.lost = self._tipping.leg if missing.lost is None else missing.lost
             if missing.lost is not None and self._tipping.at_edge:
                 missing.tipped(missing.lost, footing.places[missing.lost])
-        elif missing.lost is None:
+        elif missing.lost is None and not contacts.estimated:
             missing.lost = body.sinks_at(state, footing, dt)
         footing = footing._replace(down=[on and stand for on, stand in zip(footing.down, stands, strict=True)])
         missing.step(searches, footing, dt, footholds=footholds, deeper=deeper)

@@ -10,7 +10,7 @@ from tarsus.control.limitation import Limitation, LimitationKind
 __all__ = ["BodyCondition"]
 
 # Time without any contact after which the robot is in the air, and time its feet must hold it to count as put down [s].
-_IN_AIR, _PUT_DOWN = 0.5, 0.2
+_IN_AIR, _PUT_DOWN = 0.5, 0.5
 # Tilt above which the robot has fallen, and below which it is upright again [rad]; how long either must last [s].
 _FALLEN, _UPRIGHT, _LASTS = math.radians(45.0), math.radians(30.0), 0.2
 
