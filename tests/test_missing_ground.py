@@ -1209,3 +1209,9 @@ def test_a_foot_that_loses_contact_at_an_edge_goes_down_gently_while_the_others_
     before = go(100)
     assert any("no ground within" in each.cause for each in walk.limitations)
     assert 0.0 < before - go(25, 3) < 0.004
+
+
+def test_a_foot_that_its_leg_holds_up_at_another_place_does_not_press_on():
+    search = Search(leg=0, depth=0.015, falls=False, lasts=True, raised=0.01)
+    held_up = [search.is_missing(0.1, 0.0, 1.0, held=True, held_up=up, again=True) for up in (False, True)]
+    assert held_up == [False, True]

@@ -102,3 +102,23 @@ def test_a_switch_that_gets_stuck_closed_in_mid_swing_is_no_obstacle_for_long():
     assert min(hovers) < 0.001
     assert not controller.limitations
     assert controller.place[0] > 0.8
+
+
+def test_a_switch_that_has_never_closed_is_open_where_the_leg_holds_up_its_foot():
+    contacts = FootContacts(2)
+    for _ in range(3):
+        take_in(contacts, [True, False], [True, True], 0.04)
+    for _ in range(6):
+        take_in(contacts, [False, False], [True, True], 0.04)
+        for leg in range(2):
+            contacts.held_up(leg, 0.04)
+    # The first foot has touched the ground: its leg may rest on an edge.
+    assert [contacts.is_open(leg) for leg in range(2)] == [False, True]
+    take_in(contacts, [False, True], [True, True], 0.04)
+    assert not contacts.is_open(1)
+
+
+@pytest.mark.no_cover
+def test_a_switch_that_is_open_from_the_start_is_found_before_the_foot_steps_back():
+    """It took 4.4 s, in which the foot tried all of its places: 0.79 of the way on flat ground."""
+    assert sensor_faults.walk("makeyourpet", "flat", "switch of the middle left foot open", 0)[0] > 0.93

@@ -31,6 +31,8 @@ _LIFTS, _LIFTS_ALONE = 0.003, 0.008
 # How long other feet lose contact, while a foot that should stand has none, before its switch is taken as stuck open
 # [s]; greatest factor by which that time counts more where the foot lifts the body more.
 _OPEN_AFTER, _MOST_LIFT = 0.4, 4.0
+# Factor by which time counts more where a leg holds up a foot that has never touched the ground.
+_HELD_UP = 2.0
 # How long the robot stays up on feet that do not hold it before another foot is taken to hold it [s]; how far it moves
 # at that foot if it tips instead [m].
 _UNHELD, _TIPS = 0.15, 0.012
@@ -85,6 +87,8 @@ class FootContacts:
         # The last tilt that was measured, and that of each foot when it lost its contact [rad].
         self._last: RollPitch | None = None
         self._tilts, self.sunk = [(0.0, 0.0)] * legs, [0.0] * legs
+        # Which feet have touched the ground since the start.
+        self._touched = [False] * legs
         # By foot: time without contact, evidence of a switch stuck open, time in contact, time of search [s].
         self._without, self._evidence, self._settled, self._searched = ([0.0] * legs for _ in range(4))
 
@@ -116,6 +120,7 @@ class FootContacts:
             else:
                 self._without[leg], self._evidence[leg], self._landings[leg] = 0.0, 0.0, 0
                 self._settled[leg] += dt
+                self._touched[leg] |= self.estimator.known[leg] and self.estimator.reads(leg)
             if not on:
                 self._settled[leg] = 0.0
                 if self.is_open(leg):
@@ -204,6 +209,10 @@ class FootContacts:
             self._unheld += dt
             if self._unheld > _UNHELD and self._without[longest] > _NEVER:
                 self._evidence[longest], self.standing[longest] = math.inf, True
+
+    def held_up(self, leg: int, dt: float) -> None:
+        """Take note that a leg holds its foot up for a time [s]: if it has never touched, its switch is stuck open."""
+        self._evidence[leg] += _HELD_UP * dt * (not self._touched[leg])
 
     def tips(self, footing: Footing, deeper: float) -> int | None:
         """Return the leg at whose foot the robot tips, if it does: it sinks there, and the other feet do not hold it.

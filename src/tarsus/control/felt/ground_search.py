@@ -84,6 +84,9 @@ class GroundSearch:
         elif missing.lost is None and not contacts.estimated:
             missing.lost = body.sinks_at(state, footing, dt)
         footing = footing._replace(down=[on and stand for on, stand in zip(footing.down, stands, strict=True)])
+        for search in searches:
+            if search.on_step(footing.height, body.reach.scale):
+                contacts.held_up(search.leg, dt)
         missing.step(searches, footing, dt, footholds=footholds, deeper=deeper)
         body.roughness.at_edge(missing.edge)
         return stands

@@ -168,8 +168,8 @@ class MissingGround:
             pace = max(1 - (search.depth - slows) / (deep - slows), slowest)
             self.pace, self._slows = min((self.pace, self._slows), (pace, self._names[leg]))
             self._held[leg] = (before.get(leg, 0.0) + dt) * (on_step and not search.falls)
-            long = not search.lasts or self._held[leg] > _HELD + _LATER * search.age
-            missing = search.is_missing(height, deeper, self._scale, held=held, long=long, again=leg in self.places)
+            held_up, again = self._held[leg] > _HELD + _LATER * search.age, leg in self.places
+            missing = search.is_missing(height, deeper, self._scale, held=held, held_up=held_up, again=again)
             way = self._edge.seen_from(feet[leg], rest[leg])
             if search.tips(deep, self._scale, held=held):
                 self._tip(way)

@@ -67,7 +67,7 @@ class Search(NamedTuple):
         unheld = not held and self.sunk > -scale * _LIFTS and self.depth + max(self.sunk, 0.0) > deep
         return unheld or self.sunk > deep or min(self.leans, self.depth) > deep
 
-    def is_missing(self, height: float, deeper: float, scale: float, *, held: bool, long: bool, again: bool) -> bool:
+    def is_missing(self, height: float, deeper: float, scale: float, *, held: bool, held_up: bool, again: bool) -> bool:
         """Return whether there is no ground at the foot.
 
         Parameters
@@ -75,13 +75,13 @@ class Search(NamedTuple):
         height, deeper, scale : float
             Body height; how much deeper ground may be than expected [m]; factor by which lengths are reduced on short
             legs, 0 to 1.
-        held, long, again : bool
-            Whether the feet that stand hold the robot; whether the foot has searched for long; whether it has stepped
-            to another place.
+        held, held_up, again : bool
+            Whether the feet that stand hold the robot; whether the leg has held the foot up for long; whether the foot
+            has stepped to another place.
         """
         # At another place, a foot does not search for long at the end of its reach.
         reached = not self.falls and (self.depth > deeper + scale * STANDS or not self.lasts)
         deepest = (_DEEP_AGAIN if again else _DEEP) * height + _ROUGHLY_DEEP * deeper
-        missing = self.depth - max(self.raised, 0.0) > deepest or (reached if again else long)
+        missing = self.depth - max(self.raised, 0.0) > deepest or held_up or (reached if again else not self.lasts)
         level = abs(self.leans) < max(scale * _LEANS, deeper)
         return missing and (level or (held and not (again or self.lasts)))
