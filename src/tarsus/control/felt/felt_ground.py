@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from tarsus.control.contact.footing import Footing, along_gravity, sunk_at
+from tarsus.control.contact.footing import Footing, along_gravity, holds, sunk_at
 from tarsus.control.contact.support import Support
 from tarsus.control.felt.bearing import supporting
 from tarsus.control.felt.ground_search import GroundSearch
@@ -41,6 +41,8 @@ __all__ = ["FeltGround"]
 _DEPTH_SHARE, _ROUGH = 0.6, 0.006
 # Feet that have stood are no longer lowered this long before they lift off [s].
 _LEAVING = 0.1
+# How surely a robot is put down on feet that hold it with those that are due to lift off, but not without them.
+_ALL_HOLD = 0.3
 # Greatest speed of feet that go down; the same where contacts are estimated, as feet then press on the ground before
 # they are known to touch it [m/s].
 _DESCENT, _ESTIMATED_DESCENT = 0.4, 0.25
@@ -84,6 +86,7 @@ class FeltGround:
         self.offsets: Float[np.ndarray, "legs"] | None = None
         self.readings, self._loads = ContinuedReadings(robot), loads
         self._search = GroundSearch(body, self.choice, self.condition, self.missing)
+        self._held = 0.0
         self._centre = complex(*centre_of_mass(robot, angles)[:2].tolist())
         # Inputs kept while all is as planned, and what for; ticks and times since contacts and support were looked at.
         self._inputs: FeltInputs | None = None
@@ -136,7 +139,7 @@ class FeltGround:
         touches = [*map(self.contacts.is_in_contact, range(len(down)))]
         if self._loads.unborne:
             self.contacts.estimator.forget()
-        self.condition.step(touches, valid.tilt, dt, held=self.support.held, lifted=self._loads.unborne)
+        self.condition.step(touches, valid.tilt, dt, held=self._held, lifted=self._loads.unborne)
         centre = partial(self._middle, state)
         self.offsets = self._loads.offsets(valid, angles, state, dt, out=self._given[0], centre=centre)
         if self.missing.stranded and all(down):
@@ -241,17 +244,20 @@ class FeltGround:
         """Decide whether feet may lift off, and the pace of the walk; `due` is None while the robot stands."""
         missing, lifts, condition = self.missing, any(due or ()), self.condition
         waits = any((self.body.slope.holds, condition.carried, missing.refuses, missing.tips))
-        # No foot of a robot that is carried lifts off: all that bear load tell whether it has been put down.
-        leaves = [] if condition.carried else due
-        legs = [
-            leg for leg, on in enumerate(footing.down) if on and not (leg in missing.places or (leaves and leaves[leg]))
-        ]
+        bearing = [leg for leg, on in enumerate(footing.down) if on]
+        legs = [leg for leg in bearing if not (leg in missing.places or (due and due[leg]))]
         stays = (self.support.holds(legs, footing, anew=not self.body.since) and not (lifts and waits)) or due is None
         rests = all(on or leg in self._given[0] for leg, on in enumerate(footing.down))
         unheld = lifts and rests and not (stays or waits or missing.places)
         self.support.shift_over(legs if unheld else [], footing, dt, scale=self.body.reach.scale)
         self.support.step(stays=stays, lifts=lifts, dt=dt, swing_time=swing_time, most=missing.pace)
-        bearing = [leg for leg, on in enumerate(footing.down) if on]
+        # Feet that are due stay on the ground while the robot is carried: all of them tell, if less surely.
+        alone = (
+            condition.carried
+            and not self.support.held
+            and holds([footing.places[leg] for leg in bearing], footing.centre)
+        )
+        self._held = _ALL_HOLD if alone else float(self.support.held)
         leaving = [leg for leg, lift in enumerate(due or ()) if lift and leg not in self._given[0]]
         self.support.lift_fewer(bearing, leaving if unheld else [], footing)
 

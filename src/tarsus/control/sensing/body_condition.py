@@ -38,7 +38,7 @@ class BodyCondition:
         return self.airborne > _IN_AIR
 
     def step(
-        self, touching: Sequence[bool], tilt: float | None, dt: float, *, held: bool, lifted: bool = False
+        self, touching: Sequence[bool], tilt: float | None, dt: float, *, held: float, lifted: bool = False
     ) -> None:
         """Take in the contacts and the tilt of a tick.
 
@@ -48,12 +48,12 @@ class BodyCondition:
             Which feet touch the ground; True where nothing is known.
         tilt : float or None
             Angle of the body against gravity [rad]; None where it is not measured.
-        dt, held, lifted : float, bool, bool
-            Time since the last tick [s]; whether the feet in contact hold the robot; whether its legs have ceased to
-            bear it, as joint angles tell.
+        dt, held, lifted : float, float, bool
+            Time since the last tick [s]; how surely the feet in contact hold the robot, 0 to 1; whether its legs have
+            ceased to bear it, as joint angles tell.
         """
         self.airborne = 0.0 if any(touching) else self.airborne + dt
-        self._held = self._held + dt if held else 0.0
+        self._held = self._held + held * dt if held else 0.0
         if tilt is not None:
             self.tilt, changes = tilt, tilt < _UPRIGHT if self.fallen else tilt > _FALLEN
             self._time = self._time + dt if changes else 0.0
