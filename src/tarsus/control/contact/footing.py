@@ -36,6 +36,10 @@ class Footing(NamedTuple):
     centre: complex
     height: float
 
+    def held_by(self, legs: Sequence[int]) -> bool:
+        """Return whether the feet of these legs hold the robot."""
+        return holds([self.places[leg] for leg in legs], self.centre)
+
 
 def holds(feet: Sequence[complex], centre: complex) -> bool:
     """Return whether a point is inside the support polygon of feet, by a small margin; x + iy [m]."""

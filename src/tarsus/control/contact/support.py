@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from tarsus.control.contact.footing import Footing, holds
+from tarsus.control.contact.footing import Footing
 
 __all__ = ["HALTING", "Support"]
 
@@ -62,7 +62,7 @@ class Support:
             Legs whose feet bear load; all feet; whether to compute it again for the same feet.
         """
         if anew or legs != self._bearing:
-            self._bearing, self.held = legs, holds([footing.places[leg] for leg in legs], footing.centre)
+            self._bearing, self.held = legs, footing.held_by(legs)
         return self.held
 
     def shift_over(self, legs: list[int], footing: Footing, dt: float, *, scale: float) -> None:
@@ -93,7 +93,7 @@ class Support:
         if due and self._waited > _LONG:
             for leg in due:
                 left = [other for other in bearing if other != leg]
-                if holds([footing.places[other] for other in left], footing.centre):
+                if footing.held_by(left):
                     bearing = left
             self.stay = [leg for leg in due if leg in bearing]
             self.waits = len(self.stay) == len(due)

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from tarsus.control.contact.footing import Footing, along_gravity, holds, sunk_at
+from tarsus.control.contact.footing import Footing, along_gravity, sunk_at
 from tarsus.control.contact.support import Support
 from tarsus.control.felt.bearing import supporting
 from tarsus.control.felt.ground_search import GroundSearch
@@ -252,14 +252,10 @@ class FeltGround:
         self.support.shift_over(legs if unheld else [], footing, dt, scale=self.body.reach.scale)
         self.support.step(stays=stays, lifts=lifts, dt=dt, swing_time=swing_time, most=missing.pace)
         # Feet that are due stay on the ground while the robot is carried: all of them tell, if less surely.
-        alone = (
-            condition.carried
-            and not self.support.held
-            and holds([footing.places[leg] for leg in bearing], footing.centre)
-        )
+        alone = condition.carried and not self.support.held and footing.held_by(bearing)
         self._held = _ALL_HOLD if alone else float(self.support.held)
-        leaving = [leg for leg, lift in enumerate(due or ()) if lift and leg not in self._given[0]]
-        self.support.lift_fewer(bearing, leaving if unheld else [], footing)
+        leaving = [leg for leg, lift in enumerate(due or ()) if lift and leg not in self._given[0]] if unheld else []
+        self.support.lift_fewer(bearing, leaving, footing)
 
     @property
     def limitations(self) -> tuple[Limitation, ...]:
