@@ -240,7 +240,7 @@ class FootContacts:
         self._evidence, self._landings, self._unheld = [0.0] * len(self._evidence), [0] * len(self._landings), 0.0
 
     def is_open(self, leg: int) -> bool:
-        """Return whether a switch is taken as stuck open: other feet tell of a contact that it does not report."""
+        """Return whether a switch is taken as stuck open: other feet, or its leg, tell of a contact."""
         return self._evidence[leg] > _OPEN_AFTER
 
     def is_known(self, leg: int) -> bool:
