@@ -22,7 +22,7 @@ from tarsus.control.tick.components import WalkComponents
 from tarsus.control.tick.estimate import estimated
 from tarsus.control.tick.integrate import integrated
 from tarsus.control.tick.limit import limited, twist_limiters
-from tarsus.control.tick.plan import CommandIntake, planned
+from tarsus.control.tick.plan import planned
 from tarsus.control.transition.planner import TransitionPlanner
 from tarsus.control.walk_state import TickState, WalkState
 from tarsus.errors import InputError
@@ -124,7 +124,6 @@ class WalkController:
         loads = FootLoads(self.robot, admittance)
         self._walk = WalkComponents(planner, stance, body=body, loads=loads)
         self._tick = TickState(self._walk.initial, np.zeros(3))
-        self._intake = CommandIntake(self.robot.legs, self._walk.transitions)
         self._twist_limiters = twist_limiters(self._walk)
 
     def step(
@@ -156,7 +155,7 @@ class WalkController:
         command = command if isinstance(command, Command) else Command(twist=command)
         require_number("dt", dt, zero=False)
         dt = min(float(dt), _LONGEST_TICK)
-        self._intake.accept(command)
+        self._walk.transitions.scheduler.request(command)
         tick = estimated(self._walk, self._tick, readings, dt)
         tick = planned(self._walk, tick, command, dt)
         tick = limited(self._walk, tick, command, dt, self._twist_limiters)

@@ -8,9 +8,7 @@ from functools import partial
 from tarsus.control.command import Command
 from tarsus.control.limitation import Cause
 from tarsus.control.tick.components import WalkComponents
-from tarsus.control.transition.executor import TransitionExecutor
 from tarsus.control.transition.stance_transition import StanceTarget, StanceTransition, WalkParameters
-from tarsus.control.walk.foot_targets import excluded_legs
 from tarsus.control.walk.state import GaitState
 from tarsus.control.walk_state import TickState
 from tarsus.gait.stance.stability import support_sets
@@ -18,46 +16,10 @@ from tarsus.gait.stance.supporting_feet import one_at_a_time
 from tarsus.incremental import Incremental
 from tarsus.kinematics.stability import stability_margin
 
-__all__ = ["CommandIntake", "planned"]
+__all__ = ["planned"]
 
 # Least static stability margin on the remaining feet when a leg is taken out of the gait [m].
 _LEAST_MARGIN = 0.01
-
-
-class CommandIntake:
-    """Passes commands to the transition scheduler.
-
-    Parameters
-    ----------
-    legs, transitions : int, TransitionExecutor
-        Number of legs; the stance transitions.
-    """
-
-    def __init__(self, legs: int, transitions: TransitionExecutor) -> None:
-        self._legs, self._transitions = legs, transitions
-        self._last: Command | None = None
-
-    def accept(self, command: Command) -> None:
-        """Request what is commanded besides the twist, where it differs from what was requested before.
-
-        Parameters
-        ----------
-        command : Command
-            The command.
-
-        Raises
-        ------
-        InputError
-            If a value is out of its range.
-        UnknownNameError
-            If no gait has the name.
-        """
-        scheduler = self._transitions.scheduler
-        excluded = excluded_legs(command, scheduler.requested.excluded, self._legs)
-        known = command.only_twist or command is self._last
-        if not known or excluded != scheduler.requested.excluded:
-            scheduler.request(command, excluded)
-            self._last = command
 
 
 def planned(walk: WalkComponents, tick: TickState, command: Command, dt: float) -> TickState:

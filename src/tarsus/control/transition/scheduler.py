@@ -10,6 +10,7 @@ from typing import TypeAlias
 from tarsus.control.command import Command
 from tarsus.control.limitation import Cause, Limitation, LimitationKind
 from tarsus.control.transition.stance_transition import StanceTransition, WalkParameters
+from tarsus.control.walk.foot_targets import excluded_legs
 from tarsus.gait.gait import Gait
 from tarsus.incremental import Incremental
 
@@ -43,6 +44,8 @@ class TransitionScheduler:
         self.current = initial
         self.requested = initial.parameters
         self.planned: StanceTransition | None = None
+        # The last command that was not for the twist alone: mostly the same object is given for many ticks.
+        self._last: Command | None = None
         # Parameters that are not feasible at all, and the limitations to report for each.
         self._rejections: dict[WalkParameters, list[Limitation]] = {}
         self._job: Incremental[None] | None = None
@@ -64,24 +67,25 @@ class TransitionScheduler:
         valid = (each for each in self.current.limitations if getattr(now, each.kind) == getattr(then, each.kind))
         return (*(found for found in valid if found.kind not in newer), *self._shortfalls)
 
-    def request(self, command: Command, excluded: tuple[int, ...]) -> None:
+    def request(self, command: Command) -> None:
         """Take note of a command.
 
         Parameters
         ----------
         command : Command
             The command; what is None in it stays as it is.
-        excluded : tuple of int
-            Legs to take out of the gait.
 
         Raises
         ------
         InputError
-            If the gait is for another number of legs.
+            If the gait is for another number of legs, or the command names a leg that the robot does not have.
         UnknownNameError
             If no gait has the name.
         """
+        if command.only_twist or command is self._last:
+            return
         before, changes = self.requested, command.parameters
+        excluded = excluded_legs(command, before.excluded, before.gait.legs)
         gait = changes.get("gait", before.gait)
         if isinstance(gait, str):
             gait = before.gait if gait == before.gait.name else Gait.named(gait, legs=before.gait.legs)
@@ -90,6 +94,7 @@ class TransitionScheduler:
         if changes.get("cycle_time") == "auto":
             changes["cycle_time"] = None
         asked = dataclasses.replace(before, unloaded=excluded, excluded=excluded, **changes)
+        self._last = command
         if asked != before:
             self.requested, self._rejections = asked, {}
             self._shortfalls = ()

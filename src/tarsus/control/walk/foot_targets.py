@@ -42,8 +42,6 @@ def excluded_legs(command: Command, before: tuple[int, ...], legs: int) -> tuple
     InputError
         If the command names a leg that the robot does not have.
     """
-    if not (command.foot_targets or command.foot_velocities):
-        return before
     excluded = set(before)
     for leg, point in {**(command.foot_targets or {}), **(command.foot_velocities or {})}.items():
         require_leg_number("foot_targets", leg, legs)
