@@ -1,4 +1,4 @@
-"""The picture of the robot's states, drawn from the table of allowed transitions."""
+"""The picture of the robot's states, drawn from the table of transitions."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from tarsus import RobotState
-from tarsus.control.robot_state import REQUESTABLE, TRANSITIONS
+from tarsus.control.robot_state import CHANGES, REQUESTABLE
 from tarsus.report.style import INK, PALE, WARNING, new_figure
 
 if TYPE_CHECKING:
@@ -29,6 +29,23 @@ PLACES = {
 # Bend of the arrows that would run across a box otherwise.
 BENDS = {(RobotState.FOLDED, RobotState.RISING): -0.28, (RobotState.RISING, RobotState.FOLDED): 0.38}
 WIDTH, HEIGHT = 0.72, 0.34
+
+
+def _transitions() -> dict[RobotState, set[RobotState]]:
+    following = {state: {RobotState.FAULT} for state in RobotState}
+    for (state, _), change in CHANGES.items():
+        following[state].add(change)
+        # A change may also return to where the robot was.
+        following[change] |= {state, change.end}
+    following[RobotState.STANDING].add(RobotState.WALKING)
+    following[RobotState.WALKING].add(RobotState.STANDING)
+    # A robot that the guard releases continues what it did.
+    following[RobotState.FAULT] = set(RobotState) - {RobotState.FAULT}
+    return following
+
+
+# The states that may follow each state.
+TRANSITIONS = _transitions()
 
 
 def _box(axes: Axes, state: RobotState) -> FancyBboxPatch:

@@ -6,12 +6,13 @@ import re
 import numpy as np
 import pytest
 
+from draw_states import TRANSITIONS
 from tarsus.control.command import Command
 from tarsus.control.limitation import LimitationKind
 from tarsus.control.plant import IdealPlant
 from tarsus.control.readings import SensorReadings
 from tarsus.control.robot_controller import RobotController
-from tarsus.control.robot_state import REQUESTABLE, TRANSITIONS, RobotState, next_state, requested_state
+from tarsus.control.robot_state import CHANGES, REQUESTABLE, RobotState, requested_state
 from tarsus.control.safety import GuardBounds
 from tarsus.control.walk_controller import WalkController
 from tarsus.errors import InputError, TarsusError, UnknownNameError
@@ -41,15 +42,11 @@ def states_of(controller, command, seconds, *, until=None):
 # States.
 
 
-def test_every_state_has_its_transitions_and_every_requestable_one_can_be_reached():
-    assert set(TRANSITIONS) == set(RobotState)
-    assert all(RobotState.FAULT in TRANSITIONS[state] for state in RobotState if state is not RobotState.FAULT)
+def test_every_requestable_state_can_be_reached():
     for start in REQUESTABLE:
         for goal in REQUESTABLE:
             state, steps = start, 0
-            while (change := next_state(state, goal)) is not None:
-                assert change in TRANSITIONS[state]
-                assert change.end in TRANSITIONS[change]
+            while (change := CHANGES.get((state, goal))) is not None:
                 state, steps = change.end, steps + 1
                 assert steps <= 2
             # Folded legs are not unfolded just to lie.

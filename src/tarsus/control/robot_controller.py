@@ -13,7 +13,7 @@ from tarsus.control.limitation import Limitation, LimitationKind
 from tarsus.control.pose.admittance import Admittance
 from tarsus.control.pose.posture_feedback import Levelling
 from tarsus.control.readings import SensorReadings
-from tarsus.control.robot_state import RobotState, next_state, requested_state
+from tarsus.control.robot_state import CHANGES, RobotState, requested_state
 from tarsus.control.safety import Guard, GuardBounds, GuardState, Intervention
 from tarsus.control.sequence import MotionSequence
 from tarsus.control.startup import fold, sit_down, stand_up
@@ -219,7 +219,7 @@ class RobotController:
     def _next_change(self) -> RobotState | None:
         """Return the next change towards the wanted state; None where that is reached, or a change was not possible."""
         state = RobotState.STANDING if self._now.state.upright else self._now.state
-        return None if self._rejected is not None else next_state(state, self._goal)
+        return None if self._rejected is not None else CHANGES.get((state, self._goal))
 
     def _plan(self, state: RobotState, angles: Float[np.ndarray, "legs 3"]) -> MotionSequence:
         if state is RobotState.RISING:

@@ -1,14 +1,12 @@
-"""The states of a robot, and which states may follow each state."""
+"""The states of a robot, and the changes between them."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from enum import StrEnum
-from types import MappingProxyType
 
 from tarsus.errors import InputError
 
-__all__ = ["REQUESTABLE", "TRANSITIONS", "RobotState", "next_state", "requested_state"]
+__all__ = ["CHANGES", "REQUESTABLE", "RobotState", "requested_state"]
 
 
 class RobotState(StrEnum):
@@ -39,32 +37,20 @@ class RobotState(StrEnum):
         return self in (RobotState.LYING, RobotState.FOLDED)
 
 
-TRANSITIONS: Mapping[RobotState, frozenset[RobotState]] = MappingProxyType(
-    {
-        RobotState.LYING: frozenset({RobotState.RISING, RobotState.FOLDING, RobotState.FAULT}),
-        RobotState.FOLDED: frozenset({RobotState.RISING, RobotState.FAULT}),
-        RobotState.RISING: frozenset({RobotState.STANDING, RobotState.LYING, RobotState.FOLDED, RobotState.FAULT}),
-        RobotState.STANDING: frozenset({RobotState.WALKING, RobotState.SITTING, RobotState.FAULT}),
-        RobotState.WALKING: frozenset({RobotState.STANDING, RobotState.FAULT}),
-        RobotState.SITTING: frozenset({RobotState.LYING, RobotState.STANDING, RobotState.FAULT}),
-        RobotState.FOLDING: frozenset({RobotState.FOLDED, RobotState.LYING, RobotState.FAULT}),
-        # A robot that the guard releases continues what it did.
-        RobotState.FAULT: frozenset(RobotState) - {RobotState.FAULT},
-    }
-)
-"""The states that may follow each state. From RISING, SITTING and FOLDING the robot may also return to where it was."""
-
 REQUESTABLE = (RobotState.STANDING, RobotState.LYING, RobotState.FOLDED)
 """The states that a command may ask for; walking follows from a twist."""
 
-# The change to begin with, by the present state and the wanted one.
-_STEPS = {
+# A change ends in its `RobotState.end`, or where it began. A folded robot counts as lying already: its legs are
+# unfolded only by standing up.
+CHANGES = {
     (RobotState.STANDING, RobotState.LYING): RobotState.SITTING,
     (RobotState.STANDING, RobotState.FOLDED): RobotState.SITTING,
     (RobotState.LYING, RobotState.STANDING): RobotState.RISING,
     (RobotState.LYING, RobotState.FOLDED): RobotState.FOLDING,
     (RobotState.FOLDED, RobotState.STANDING): RobotState.RISING,
 }
+"""The table of transitions: the change to begin with, by the present state and the wanted one."""
+
 # The state in which each change ends.
 _ENDS = {
     RobotState.RISING: RobotState.STANDING,
@@ -86,20 +72,7 @@ def requested_state(value: RobotState | str) -> RobotState:
     InputError
         If it is any other value.
     """
-    if value not in [*REQUESTABLE, *map(str, REQUESTABLE)]:
+    if value not in REQUESTABLE:
         known = ", ".join(f"'{state}'" for state in REQUESTABLE)
         raise InputError(f"the command's state is {value!r}; it must be one of {known}")
     return RobotState(value)
-
-
-def next_state(state: RobotState, goal: RobotState) -> RobotState | None:
-    """Return the next state on the way to a goal: the change to begin with; None where the goal is reached.
-
-    A folded robot counts as lying already: its legs are unfolded only by standing up.
-
-    Parameters
-    ----------
-    state, goal : RobotState, RobotState
-        The present state and the wanted one, each one of `REQUESTABLE`.
-    """
-    return _STEPS.get((state, goal))

@@ -7,7 +7,7 @@ from typing import Protocol
 from tarsus.control.command import Command
 from tarsus.control.plant import IdealPlant, Plant
 from tarsus.control.robot_controller import RobotController
-from tarsus.control.robot_state import next_state, requested_state
+from tarsus.control.robot_state import CHANGES, requested_state
 from tarsus.errors import TarsusError
 from tarsus.robot.robot import Robot
 from tarsus.studio.drive_frames import DriveFrames, command_of
@@ -83,7 +83,7 @@ class Driver:
     def is_planning(self) -> bool:
         """Whether the next step may plan a change of state, which takes longer than a frame."""
         state, requested = self._controller.output.state, self._command.state
-        return requested is not None and next_state(state, requested_state(requested)) is not None
+        return requested is not None and (state, requested_state(requested)) in CHANGES
 
     def command(self, message: ask.Command) -> None:
         """Set the command; it holds until the next one.
