@@ -8,8 +8,7 @@ from collections.abc import Sequence
 from tarsus.control.contact.foot_contacts import FootContacts
 from tarsus.control.contact.footing import Footing, sunk_at
 from tarsus.control.terrain.body_motion import BodyMotion
-from tarsus.control.walk.felt_feet import ROUNDING
-from tarsus.control.walk.state import GaitState
+from tarsus.control.walk.state import ROUNDING, GaitState
 
 __all__ = ["hovering", "not_sunk", "supporting"]
 

@@ -16,8 +16,7 @@ from tarsus.control.felt.collision import (
 )
 from tarsus.control.search.missing_ground import MissingGround
 from tarsus.control.terrain.body_motion import BodyMotion
-from tarsus.control.walk.felt_feet import ROUNDING
-from tarsus.control.walk.state import GaitState
+from tarsus.control.walk.state import ROUNDING, GaitState
 from tarsus.control.walk.step_timing import StepTiming
 from tarsus.control.walk.stepper import land
 

@@ -20,7 +20,7 @@ from tarsus.control.terrain.ground_map import GroundMap
 from tarsus.control.terrain.reach import Reach
 from tarsus.control.terrain.roughness import GroundAdaptation, Roughness
 from tarsus.control.transition.executor import TransitionExecutor
-from tarsus.control.walk.state import PHASE_TOLERANCE, GaitState
+from tarsus.control.walk.state import ROUNDING, GaitState
 from tarsus.control.walk_state import TickState
 from tarsus.gait.stance.reachable_heights import reachable_share
 from tarsus.gait.stance.stance_geometry import SWING_HEIGHT
@@ -29,7 +29,7 @@ from tarsus.robot.robot import Robot
 __all__ = ["BodyMotion"]
 
 # Period of the looks at height, tilt and lost way [s].
-_PERIOD = 0.04 - PHASE_TOLERANCE
+_PERIOD = 0.04 - ROUNDING
 # Time without a measured attitude after which the body counts as level, and after which its tilt is unknown [s].
 _HOLDS, _TIMEOUT = 0.15, 2.0
 # Change of the tilt above which the body's rates are decided again between two looks [rad].

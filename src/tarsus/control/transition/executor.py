@@ -14,7 +14,7 @@ from tarsus.control.transition.stance_transition import StanceTransition
 from tarsus.control.walk.foot_targets import FootTargets
 from tarsus.control.walk.foothold import final_footholds
 from tarsus.control.walk.reference_governor import FootPrediction
-from tarsus.control.walk.state import POSITION_TOLERANCE, GaitState
+from tarsus.control.walk.state import POSITION_TOLERANCE, ROUNDING, GaitState
 from tarsus.control.walk.step_timing import StepTiming
 from tarsus.control.walk.stepper import stance_tolerance
 from tarsus.control.walk_state import TickState
@@ -28,7 +28,6 @@ __all__ = ["TransitionExecutor"]
 
 _SWAY = Cause("joint speed and acceleration at this cycle time")
 _SHIFTS = Cause("the body shift of this gait takes its place")
-_ROUNDING = 1e-9  # of a distance [m]
 
 
 class TransitionExecutor:
@@ -207,7 +206,7 @@ class TransitionExecutor:
         prediction = FootPrediction.of(now.gait, np.zeros_like(ends), ends, planned.timing.bandwidth)
         over = prediction.excess(now.twist[None], bounds).max(axis=(1, 2, 3, 4))
         # Symmetric legs differ only by rounding: the first of them is taken, so that all machines choose the same one.
-        first = int((over <= over.min() + _ROUNDING).argmax())
+        first = int((over <= over.min() + ROUNDING).argmax())
         if over[first] <= POSITION_TOLERANCE:
             self._next, self._first_leg, self.scheduler.planned = planned, first, None
             self.footholds.restrict(planned.final_limits)

@@ -8,10 +8,7 @@ from typing import NamedTuple
 
 from tarsus.control.pose.posture_feedback import PostureRates
 
-__all__ = ["ROUNDING", "FeltFoot", "FeltInputs", "GroundUnder", "travel_share"]
-
-ROUNDING = 1e-9
-"""Differences of heights below this are rounding [m]."""
+__all__ = ["FeltFoot", "FeltInputs", "GroundUnder", "travel_share"]
 
 # Fraction of the swing in which a foot travels: for strokes up to half the longest, for the longest, and the least.
 _SLOW_TRAVEL, _FAST_TRAVEL, _LEAST_TRAVEL = 0.75, 0.92, 0.5

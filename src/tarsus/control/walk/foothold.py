@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from tarsus.control.walk.state import GaitState, StepInputs, integrate_twist
+from tarsus.control.walk.state import ROUNDING, GaitState, StepInputs, integrate_twist
 from tarsus.gait.foot_polygons import NORMALS_CONJUGATE
 
 if TYPE_CHECKING:
@@ -18,8 +18,6 @@ __all__ = ["FootholdPredictor", "final_footholds"]
 
 # Below this twist [m/s, rad/s] a stopping robot steps to its final rest footholds.
 _FINAL_SPEED = 0.01
-# Tolerance of fractions near 1.
-_ROUNDING = 1e-9
 
 
 def final_footholds(
@@ -80,7 +78,7 @@ class FootholdPredictor:
         if abs(out) > inputs.placement_radii[leg]:
             along = (NORMALS_CONJUGATE * out).real
             fraction = float((inputs.placement_bounds[leg] / np.maximum(along, 1e-12)).min())
-            if fraction < 1 - _ROUNDING:
+            if fraction < 1 - ROUNDING:
                 foothold = position + rotation * (rest + fraction * out)
         return self._now.origin + self._turn * foothold
 

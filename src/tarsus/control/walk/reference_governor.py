@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from tarsus.control.filters import integral_factors
-from tarsus.control.walk.state import GaitState
+from tarsus.control.walk.state import ROUNDING, GaitState
 from tarsus.gait.foot_polygons import NORMALS
 
 if TYPE_CHECKING:
@@ -20,8 +20,6 @@ if TYPE_CHECKING:
 
 __all__ = ["FootPrediction"]
 
-# Rounding of a distance [m].
-_TOLERANCE = 1e-9
 # Fractions of the path to the command that are tried; fractions to which an infeasible present target is reduced.
 _FRACTIONS = np.array([0.0, 0.002, 0.006, 0.02, 0.06, 0.12, 0.22, 0.36, 0.55, 0.8, 1.0])[:, None]
 _REDUCTIONS = np.array([0.0, 0.05, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 0.95, 0.98, 1.0])[:, None]
@@ -151,5 +149,5 @@ class FootPrediction(NamedTuple):
 
 def _last_feasible(excess: Float[np.ndarray, "n 3 legs 16"]) -> int | None:
     """Return the index of the last target with which every foot stays in its polygon."""
-    feasible: list[bool] = (np.maximum.reduce(excess, axis=(1, 2, 3)) <= _TOLERANCE).tolist()
+    feasible: list[bool] = (np.maximum.reduce(excess, axis=(1, 2, 3)) <= ROUNDING).tolist()
     return len(feasible) - 1 - feasible[::-1].index(True) if True in feasible else None

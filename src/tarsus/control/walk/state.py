@@ -24,10 +24,10 @@ from tarsus.kinematics.pose import Pose
 if TYPE_CHECKING:
     from jaxtyping import Bool, Complex, Float
 
-__all__ = ["PHASE_TOLERANCE", "POSITION_TOLERANCE", "GaitState", "StepInputs", "integrate_twist"]
+__all__ = ["POSITION_TOLERANCE", "ROUNDING", "GaitState", "StepInputs", "integrate_twist"]
 
-PHASE_TOLERANCE = 1e-9
-"""Differences of the clock below this are rounding [cycles]."""
+ROUNDING = 1e-9
+"""Differences of fractions, of the clock [cycles], of places and heights [m] below this are rounding."""
 
 POSITION_TOLERANCE = 1e-6
 """A foot this close to its rest foothold is at it [m]."""

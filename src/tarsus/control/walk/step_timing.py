@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from tarsus.control.walk.state import PHASE_TOLERANCE, GaitState
+from tarsus.control.walk.state import ROUNDING, GaitState
 from tarsus.gait.gait import Gait
 from tarsus.gait.stance.velocity_limits import stance_overhang
 
@@ -67,7 +67,7 @@ class StepTiming(NamedTuple):
 
     def due(self, state: GaitState, dt: float) -> list[bool]:
         """Return which feet on the ground are due to lift off within a time [s]."""
-        clock, lifts = state.clock + self.frequency * dt, self.gait.duty_factor - PHASE_TOLERANCE
+        clock, lifts = state.clock + self.frequency * dt, self.gait.duty_factor - ROUNDING
         steps = zip(state.down.tolist(), self.gait.offsets, state.step_number.tolist(), strict=True)
         return [on and clock > offset + number + lifts for on, offset, number in steps]
 
@@ -99,7 +99,7 @@ class StepTiming(NamedTuple):
         offsets, duty_factor = np.asarray(self.gait.offsets), self.gait.duty_factor
         shifted = any(state.shift.value.tolist())
         clock = state.clock if shifted else float(offsets[leg]) + duty_factor
-        return state._replace(clock=clock, step_number=np.ceil(clock - offsets - duty_factor - PHASE_TOLERANCE))
+        return state._replace(clock=clock, step_number=np.ceil(clock - offsets - duty_factor - ROUNDING))
 
     def approach(self, frequency: float, dt: float) -> StepTiming:
         """Return the timing after a tick [s] in which the step frequency changes towards another [1/s]."""

@@ -9,7 +9,7 @@ import numpy as np
 
 from tarsus.control.filters import CriticallyDamped
 from tarsus.control.walk.foothold import FootholdPredictor, final_footholds
-from tarsus.control.walk.state import PHASE_TOLERANCE, POSITION_TOLERANCE, GaitState, StepInputs, integrate_twist
+from tarsus.control.walk.state import POSITION_TOLERANCE, ROUNDING, GaitState, StepInputs, integrate_twist
 from tarsus.gait.stance.stance_geometry import SWING_HEIGHT
 from tarsus.gait.swing_trajectory import quintic
 
@@ -77,7 +77,7 @@ def advance(state: GaitState, inputs: StepInputs, dt: float) -> GaitState:
     since_lift = [clock - (offset + duty_factor + number) for offset, number in step_of_leg]
     down = state.down.tolist()
     steps = inputs.frequency > 0.0 and not inputs.hold_feet
-    due = [on and steps and since > PHASE_TOLERANCE for on, since in zip(down, since_lift, strict=True)]
+    due = [on and steps and since > ROUNDING for on, since in zip(down, since_lift, strict=True)]
     if all(down) and not any(due):
         return after
     final = final_footholds(after, rest=inputs.rest, bandwidth=inputs.bandwidth) if stopping else None
@@ -166,7 +166,7 @@ def _swing(
             # A path is halfway at half of its time: there the foot is aside by half as much as its target, by the bow.
             target += 2 * state.felt[leg].bow
         left, path = end - phase, (target, 0j, 0j)
-        if since >= swing - PHASE_TOLERANCE:
+        if since >= swing - ROUNDING:
             landed.append(leg)
             reached = 0.0
         elif left > 0:

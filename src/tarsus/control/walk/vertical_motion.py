@@ -8,8 +8,8 @@ from typing import TypeAlias
 
 import numpy as np
 
-from tarsus.control.walk.felt_feet import ROUNDING, FeltFoot, FeltInputs, GroundUnder
-from tarsus.control.walk.state import GaitState, StepInputs
+from tarsus.control.walk.felt_feet import FeltFoot, FeltInputs, GroundUnder
+from tarsus.control.walk.state import ROUNDING, GaitState, StepInputs
 from tarsus.gait.swing_trajectory import quintic
 
 __all__ = ["moved_vertically"]
