@@ -11,9 +11,6 @@ from tarsus.representation import represented
 
 __all__ = ["Cause", "Limitation", "LimitationKind"]
 
-_NONE = math.nan
-
-
 # Unit in which the numbers of a kind are shown, and how many of them are in one SI unit.
 _LENGTH, _FRACTION, _NUMBER = ("mm", 1000.0), ("%", 100.0), ("", 1.0)
 
@@ -71,15 +68,15 @@ class Cause(NamedTuple):
 
     reason: str
     leg: str = ""
-    margin: float = _NONE
-    least_margin: float = _NONE
+    margin: float = math.nan
+    least_margin: float = math.nan
 
     def text(self) -> str:
         """Return the cause as a line of text."""
         cause = ": ".join(part for part in (self.leg, self.reason) if part)
         return cause + _margin_text(self.margin, self.least_margin)
 
-    def limitation(self, kind: LimitationKind, *, asked: float = _NONE, granted: float = _NONE) -> Limitation:
+    def limitation(self, kind: LimitationKind, *, asked: float = math.nan, granted: float = math.nan) -> Limitation:
         """Return the limitation of a kind that has this cause; `asked` and `granted` are those of `Limitation`."""
         reason, leg, margin, least = self
         return Limitation(
@@ -114,11 +111,11 @@ class Limitation:
     cause: str
     leg: str = ""
     joint: str = ""
-    asked: float = _NONE
-    granted: float = _NONE
-    bound: float = _NONE
-    margin: float = _NONE
-    least_margin: float = _NONE
+    asked: float = math.nan
+    granted: float = math.nan
+    bound: float = math.nan
+    margin: float = math.nan
+    least_margin: float = math.nan
 
     @property
     def key(self) -> tuple[str, str, str, str]:
