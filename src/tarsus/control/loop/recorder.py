@@ -120,8 +120,10 @@ class Recorder:
         outputs, unmet = self._outputs, self._unmet | self._unmet_now
         twist = np.array([output.twist for output in outputs])
         guard = tuple(output.guard for output in outputs)
-        # What is measured before an output shows how the angles of the last output were executed.
-        measured = [_vectors(angles, self._controller.robot.legs) for angles in (*self._measured, None)]
+        # What is measured before an output shows how the angles of the last output were executed; NaN where it is no
+        # number.
+        legs = self._controller.robot.legs
+        measured = [as_items(angles, (legs, 3)) or [None] * legs for angles in (*self._measured, None)]
         return Recording(
             robot=self._controller.robot,
             name=name,
@@ -132,7 +134,7 @@ class Recorder:
             twist=twist,
             cycle_times=np.array([output.cycle_time for output in outputs]),
             belly=np.array([output.belly for output in outputs]),
-            measured_angles=np.array(measured),
+            measured_angles=np.array([[*map(as_vector, items)] for items in measured]),
             states=tuple(str(output.state) for output in outputs),
             activities=tuple(output.activity for output in outputs),
             gaits=tuple(output.gait.name for output in outputs),
@@ -176,12 +178,6 @@ class Recorder:
             foot_distance=0.0 if any(output.belly for output in outputs) else setup.foot_distance,
             assumed=tuple(setup.assumed(**heights)),
         )
-
-
-def _vectors(values: Any, legs: int) -> Float[np.ndarray, "legs 3"]:
-    """Return measured values of the joints by leg, as numbers; NaN where a value is no number."""
-    items = as_items(values, (legs, 3)) or [None] * legs
-    return np.array([*map(as_vector, items)])
 
 
 def _part(command: Command, kind: LimitationKind) -> Any:
