@@ -95,9 +95,8 @@ class SlopeStance:
             return
         out = rest - self._mounts
         angle = np.angle(out * uphill.conjugate())
-        nearer = np.minimum(drawn_in, _NEAREST * np.abs(out)) * (1 - share) + share * self._drawn_in * np.clip(
-            -np.cos(angle) / _DOWNHILL, 0.0, 1.0
-        )
+        downhill = np.clip(-np.cos(angle) / _DOWNHILL, 0.0, 1.0)
+        nearer = np.minimum(drawn_in, _NEAREST * np.abs(out)) * (1 - share) + share * self._drawn_in * downhill
         turned = share * _TURNED * math.cos(cmath.phase(uphill)) ** 2
         wanted = out * ((1 - nearer / np.abs(out)) * np.exp(1j * turned * np.sin(2 * angle)) - 1)
         least = self._scale * (_SMALLEST if walks else _STANDING) if share or drawn_in else 0.0
