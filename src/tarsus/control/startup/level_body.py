@@ -123,14 +123,10 @@ def _place_feet(
     folded = folded_pose(builder.robot)
     for leg in np.flatnonzero(~(builder.contacts | blocks)).tolist():
         # A leg without a foothold is retracted; if that is not possible either, it stays in the air as it is.
-        after = _place(builder, leg, choices[leg])
-        if after is None:
-            with suppress(TarsusError):
-                after = _move_leg(builder, leg, folded[leg], "retract", landed=False)
-        builder = after or builder
+        builder = _move(builder, leg, choices[leg]) or _move(builder, leg, folded[[leg]], landed=False) or builder
     # A robot that initially rests with a small stability margin is not required to have a greater one.
     remaining, margin = np.flatnonzero(blocks).tolist(), min(builder.margin, builder.initial_margin)
-    while found := next(((leg, to) for leg in remaining if (to := _place(builder, leg, choices[leg], margin))), None):
+    while found := next(((leg, to) for leg in remaining if (to := _move(builder, leg, choices[leg], margin))), None):
         placed, builder = found
         remaining.remove(placed)
     for leg in remaining:
@@ -139,23 +135,20 @@ def _place_feet(
     return builder
 
 
-def _place(
-    builder: SequenceBuilder, leg: int, choices: Float[np.ndarray, "n 3"], margin: float = 0.0
+def _move(
+    builder: SequenceBuilder, leg: int, choices: Float[np.ndarray, "n 3"], margin: float = 0.0, *, landed: bool = True
 ) -> SequenceBuilder | None:
-    """Place a foot with the first joint angles of shape (n, 3) that can be reached [rad]; None if none can."""
+    """Move a leg through the air to the first joint angles of shape (n, 3) that can be reached [rad]; None if none can.
+
+    `landed` tells whether its foot is placed on the ground.
+    """
+    name = f"{'place' if landed else 'retract'} {builder.robot.leg_codes[leg]}"
     for angles in choices:
+        target = builder.angles.copy()
+        target[leg] = angles
         with suppress(TarsusError):
-            return _move_leg(builder, leg, angles, "place", landed=True, margin=margin)
+            return builder.unload(leg).move_legs(name, target, landed=landed, margin=margin)
     return None
-
-
-def _move_leg(
-    builder: SequenceBuilder, leg: int, angles: Float[np.ndarray, "3"], verb: str, *, landed: bool, margin: float = 0.0
-) -> SequenceBuilder:
-    """Move one leg through the air to joint angles."""
-    target, name = builder.angles.copy(), f"{verb} {builder.robot.leg_codes[leg]}"
-    target[leg] = angles
-    return builder.unload(leg).move_legs(name, target, landed=landed, margin=margin)
 
 
 def _footholds(
