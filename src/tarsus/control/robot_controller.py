@@ -202,8 +202,7 @@ class RobotController:
         change, now = self._next_change(), self._now
         braking = None
         if self.leg_failures.sits and isinstance(self._activity, Walking) and not self._at_rest:
-            acceleration = self._activity.controller.joint_acceleration
-            braking = Braking(self.robot, now.angles, self._rates, acceleration)
+            braking = Braking(self.robot, now.angles, self._rates, self._activity.controller.joint_acceleration)
         if change is None or not (self._at_rest or braking):
             return
         try:

@@ -183,8 +183,7 @@ def fold(
     TarsusError
         If the robot does not lie on its belly.
     """
-    state = measured_state(robot, angles, joint_speed, joint_acceleration)
-    lying = lying_state(state, purpose="folding its legs")
+    lying = lying_state(measured_state(robot, angles, joint_speed, joint_acceleration), purpose="folding its legs")
     return lying.move_legs("fold", folded_pose(robot), landed=False).sequence(robot)
 
 

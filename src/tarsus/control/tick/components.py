@@ -80,7 +80,6 @@ class WalkComponents:
             if inverse_kinematics(self.robot, feet).ok:
                 self.ground.ground.plane = plane
                 state = self.initial._replace(ground_height=heights, felt=[FeltFoot()] * legs)
-                angles = self.solver.angles(state)
-                self.time_scaling = TimeScaling(angles, self.planner.joint_limits, self.robot.limits)
+                self.time_scaling = TimeScaling(self.solver.angles(state), self.planner.joint_limits, self.robot.limits)
                 return state
         return self.initial

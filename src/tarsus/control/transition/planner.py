@@ -227,8 +227,7 @@ class TransitionPlanner:
         """Return what is not feasible of the commanded stance, `end`."""
         mount = self.robot.geometry.mount_x + 1j * self.robot.geometry.mount_y
         missing = float((np.abs(end.rest - mount) - np.abs(reached.rest - mount)).mean())
-        width = parameters.stance_width - missing
-        return parameters.shortfalls(reached.posture, cause, stance_width=width)
+        return parameters.shortfalls(reached.posture, cause, stance_width=parameters.stance_width - missing)
 
 
 def _timing_limitations(parameters: WalkParameters, timing: CycleTiming) -> tuple[Limitation, ...]:
