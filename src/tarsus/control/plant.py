@@ -72,8 +72,8 @@ class Environment:
     def __init__(self, robot: Robot) -> None:
         self._robot, self._weight = robot, known_weight(robot)
         self._height, self._force = np.zeros(robot.legs), np.zeros(robot.legs)
-        self._tilt = 0.0, 0.0
-        self._contacts = self._attitude = self._forces = False
+        self._tilt: RollPitch | None = None
+        self._contacts = self._forces = False
 
     def set_ground(self, leg: int, height: float) -> None:
         """Set the height of the ground under a foot; foot switches are present from then on.
@@ -95,7 +95,6 @@ class Environment:
             Positive with the left side up, and with the front down, in the robot's axes whatever its heading [rad].
         """
         self._tilt = require_float("roll", roll, finite=True), require_float("pitch", pitch, finite=True)
-        self._attitude = True
 
     def set_force(self, leg: int, force: float) -> None:
         """Set the vertical force on a foot beyond its share of the weight; load cells are present from then on.
@@ -119,19 +118,19 @@ class Environment:
         touching = output.feet[:, 2] <= self._height + _TOUCH
         return {
             "contacts": touching if self._contacts else None,
-            "attitude": self._tilted(output) if self._attitude else None,
+            "attitude": None if self._tilt is None else self._tilted(output, self._tilt),
             "forces": self._loads(output, output.contacts | touching) if self._forces else None,
         }
 
-    def _tilted(self, output: ControlOutput) -> RollPitch:
+    def _tilted(self, output: ControlOutput, tilt: RollPitch) -> RollPitch:
         """Return roll and pitch: commanded tilt, plus the tilt set, plus that of unequal ground under feet [rad]."""
         roll, pitch, yaw = np.asarray(output.body.rpy).tolist()
         feet, height = output.feet[output.contacts], self._height[output.contacts]
         over = feet - feet.mean(axis=0)
         slope_x, slope_y = np.linalg.lstsq(over[:, :2], over[:, 2] - height, rcond=None)[0].tolist()
         # The slopes are along the axes of G, the tilt is about the body's axes.
-        tilt = complex(-math.atan(slope_y), math.atan(slope_x)) * cmath.exp(-1j * yaw) + complex(*self._tilt)
-        return roll + tilt.real, pitch + tilt.imag
+        tilted = complex(-math.atan(slope_y), math.atan(slope_x)) * cmath.exp(-1j * yaw) + complex(*tilt)
+        return roll + tilted.real, pitch + tilted.imag
 
     def _loads(self, output: ControlOutput, bears: Bool[np.ndarray, "legs"]) -> Float[np.ndarray, "legs"]:
         """Return the vertical forces of the ground on the feet ``(legs,)`` [N]."""
