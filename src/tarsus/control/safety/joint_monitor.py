@@ -50,9 +50,8 @@ class JointMonitor:
         motion = np.stack([bounds.speed, bounds.acceleration], axis=-1)
         # Of each joint: lower and upper limit, greatest speed and acceleration.
         self._bounds: list[list[float]] = np.concatenate([bounds.limits, motion], axis=-1).reshape(-1, 4).tolist()
-        self.angles: list[float] = [min(max(0.0, low), high) for low, high, _, _ in self._bounds]
-        self.speeds = [0.0] * len(self._bounds)
-        self._step, self._recovery = 0.0, bounds.recovery_speed
+        self._recovery = bounds.recovery_speed
+        self.start([min(max(0.0, low), high) for low, high, _, _ in self._bounds], 0.0)
 
     @property
     def at_rest(self) -> bool:

@@ -48,9 +48,11 @@ class FootholdTransfer:
         self._shift, self._sides_shift = np.zeros_like(self.new_rest), np.zeros_like(transition.final_limits.bounds)
         self.transferred = np.ones(len(self.new_rest), dtype=bool)
         self._lands_at_old = ~self.transferred
-        self.limits: VelocityLimits = transition.final_limits
-        self.bounds: Float[np.ndarray, "legs 16"] = self.limits.bounds
-        self._next_bounds = self.bounds
+        self.complete(transition.final_limits)
+
+    def complete(self, limits: VelocityLimits) -> None:
+        """Switch to the limits of the stance that has been reached."""
+        self.limits, self.bounds, self._next_bounds = limits, limits.bounds, limits.bounds
         self._update_placement()
 
     def _update_placement(self) -> None:
@@ -104,9 +106,4 @@ class FootholdTransfer:
         """Restrict the feet to further limits as well."""
         self.limits = self.limits.intersection(limits)
         self.bounds = self._next_bounds = np.minimum(self.bounds, limits.bounds)
-        self._update_placement()
-
-    def complete(self, limits: VelocityLimits) -> None:
-        """Switch to the limits of the stance that has been reached."""
-        self.limits, self.bounds, self._next_bounds = limits, limits.bounds, limits.bounds
         self._update_placement()
