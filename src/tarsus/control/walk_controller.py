@@ -121,8 +121,7 @@ class WalkController:
             if value is not None and not isinstance(value, kind):
                 raise InputError(f"{name} is {value!r}; it must be of class {kind.__name__}")
         body = BodyMotion(self.robot, levelling=levelling, adaptation=adaptation)
-        loads = FootLoads(self.robot, admittance)
-        self._walk = WalkComponents(planner, stance, body=body, loads=loads)
+        self._walk = WalkComponents(planner, stance, body=body, loads=FootLoads(self.robot, admittance))
         self._tick = TickState(self._walk.initial, np.zeros(3))
         self._twist_limiters = twist_limiters(self._walk)
 
