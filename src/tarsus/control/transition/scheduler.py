@@ -10,9 +10,9 @@ from typing import TypeAlias
 from tarsus.control.command import Command
 from tarsus.control.limitation import Cause, Limitation, LimitationKind
 from tarsus.control.transition.stance_transition import StanceTransition, WalkParameters
-from tarsus.control.walk.foot_targets import excluded_legs
 from tarsus.gait.gait import Gait
 from tarsus.incremental import Incremental
+from tarsus.robot.robot import require_leg_number
 
 __all__ = ["PlanTransition", "TransitionScheduler"]
 
@@ -85,7 +85,11 @@ class TransitionScheduler:
         if command.only_twist or command is self._last:
             return
         before, changes = self.requested, command.parameters
-        excluded = excluded_legs(command, before.excluded, before.gait.legs)
+        legs = set(before.excluded)
+        for leg, point in {**(command.foot_targets or {}), **(command.foot_velocities or {})}.items():
+            require_leg_number("foot_targets", leg, before.gait.legs)
+            (legs.discard if point is None else legs.add)(leg)
+        excluded = tuple(sorted(legs))
         gait = changes.get("gait", before.gait)
         if isinstance(gait, str):
             gait = before.gait if gait == before.gait.name else Gait.named(gait, legs=before.gait.legs)

@@ -14,12 +14,12 @@ from tarsus.control.filters import CriticallyDamped
 from tarsus.control.limitation import Cause, Limitation, LimitationKind
 from tarsus.control.walk.state import GaitState
 from tarsus.gait.stance.stance_geometry import SWING_HEIGHT, joint_margin, stance_geometry_of, sway_extremes
-from tarsus.robot.robot import Robot, require_leg_number
+from tarsus.robot.robot import Robot
 
 if TYPE_CHECKING:
     from jaxtyping import Bool, Float
 
-__all__ = ["FootTargets", "excluded_legs"]
+__all__ = ["FootTargets"]
 
 # Greatest speed [m/s] and greatest bandwidth [rad/s] with which a foot follows its target.
 _GREATEST_SPEED, _BANDWIDTH = 0.12, 5.0
@@ -27,26 +27,6 @@ _GREATEST_SPEED, _BANDWIDTH = 0.12, 5.0
 _TRIED = np.arange(17) / 16
 _FASTEST = f"feet out of the gait move at {1e3 * _GREATEST_SPEED:.0f} mm/s at most"
 _BELOW_GROUND = "the point is below the ground; the foot stays on it"
-
-
-def excluded_legs(command: Command, before: tuple[int, ...], legs: int) -> tuple[int, ...]:
-    """Return the legs that are taken out of the gait.
-
-    Parameters
-    ----------
-    command, before, legs : Command, tuple of int, int
-        The command; the legs taken out so far; number of legs.
-
-    Raises
-    ------
-    InputError
-        If the command names a leg that the robot does not have.
-    """
-    excluded = set(before)
-    for leg, point in {**(command.foot_targets or {}), **(command.foot_velocities or {})}.items():
-        require_leg_number("foot_targets", leg, legs)
-        (excluded.discard if point is None else excluded.add)(leg)
-    return tuple(sorted(excluded))
 
 
 class _Motion(NamedTuple):
