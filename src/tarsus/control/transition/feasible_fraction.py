@@ -53,10 +53,10 @@ def reachable_fraction(robot: Robot, start: StanceTarget, end: StanceTarget) -> 
         What limits it.
     """
     fractions = np.arange(1, _SAMPLES + 1) / _SAMPLES
-    stances = [start.towards(end, part) for part in fractions.tolist()]
+    stances = start.towards(end, fractions[:, None])
     # A body that is too low already may rise.
-    deepest = max(_depth(robot, start), FLOOR_TOLERANCE)
-    fails = (_depths(robot, stances) > deepest) | (_reach_margin(robot, stances) < 0).any(axis=-1)
+    deepest = max(float(_depth(robot, start)), FLOOR_TOLERANCE)
+    fails = (_depth(robot, stances) > deepest) | (_reach_margin(robot, stances) < 0).any(axis=-1)
     yield
 
     def works(fraction: float) -> bool:
@@ -137,16 +137,10 @@ def balanced_fraction(
     return feasible
 
 
-def _depths(robot: Robot, stances: list[StanceTarget]) -> Float[np.ndarray, "n"]:
-    """Return the depth of the body below level ground in each stance [m]."""
-    postures = np.array([stance.posture for stance in stances])
-    roll, pitch, yaw = postures[:, 3:SWING_HEIGHT].T
-    return np.asarray(floor_depth(robot, Pose.from_rpy(roll, pitch, yaw, postures[:, :3])))
-
-
-def _depth(robot: Robot, stance: StanceTarget) -> float:
-    """Return the depth of the body below level ground [m]."""
-    return float(_depths(robot, [stance])[0])
+def _depth(robot: Robot, stances: StanceTarget) -> Float[np.ndarray, "*batch"]:
+    """Return the depth of the body below level ground in one stance or in each of several [m]."""
+    roll, pitch, yaw = stances.posture[..., 3:SWING_HEIGHT].T
+    return np.asarray(floor_depth(robot, Pose.from_rpy(roll, pitch, yaw, stances.posture[..., :3])))
 
 
 def _bracket(works: Callable[[float], bool], infeasible: float) -> Incremental[tuple[float, float]]:
@@ -182,14 +176,15 @@ def first_increment(robot: Robot, start: StanceTarget, end: StanceTarget, fracti
     moved = np.abs(end.rest - start.rest).max()
     if moved < _SAME:
         return fraction
-    margin = _reach_margin(robot, [start._replace(rest=start.towards(end, part).rest) for part in parts.tolist()])
+    stances = start.towards(end, parts[:, None])
+    margin = _reach_margin(robot, stances._replace(posture=np.tile(start.posture, (len(parts), 1))))
     works = (moved * parts <= _LONGEST_STEP) & (margin >= 0).all(axis=-1)
     return float(parts[works.argmax()] if works.any() else parts[-1])
 
 
-def _reach_margin(robot: Robot, stances: list[StanceTarget]) -> Float[np.ndarray, "n legs"]:
+def _reach_margin(robot: Robot, stances: StanceTarget) -> Float[np.ndarray, "n legs"]:
     """Return each leg's least joint margin at its rest foothold, on the ground and lifted; negative out of reach."""
-    rows, rest = np.array([p.posture for p in stances]), np.array([p.rest for p in stances])
+    rows, rest = stances
     rotation = np.array([rotation_rows(*row) for row in rows[:, 3:SWING_HEIGHT].tolist()])
     swing_height = rows[:, SWING_HEIGHT:]
     stand = StanceGeometry(rest, rotation[:, None], rows[:, :3].T[..., None], 0.0)

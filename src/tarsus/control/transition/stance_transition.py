@@ -125,18 +125,18 @@ class WalkParameters:
 
 
 class StanceTarget(NamedTuple):
-    """A posture and the rest footholds under it.
+    """A posture and the rest footholds under it, or several of both.
 
     Attributes
     ----------
-    posture : array, shape (7,)
+    posture : array, shape (7,) or (n, 7)
         The posture.
-    rest : complex array, shape (legs,)
+    rest : complex array, shape (legs,) or (n, legs)
         The rest footholds in the heading frame [m].
     """
 
-    posture: Float[np.ndarray, "7"]
-    rest: Complex[np.ndarray, "legs"]
+    posture: Float[np.ndarray, "*batch 7"]
+    rest: Complex[np.ndarray, "*batch legs"]
 
     @classmethod
     def of(
@@ -163,8 +163,8 @@ class StanceTarget(NamedTuple):
         outward = (rest - mount) / np.maximum(np.abs(rest - mount), 1e-9)
         return cls(posture, mount + (rest + parameters.stance_width * outward - mount) * turns)
 
-    def towards(self, other: StanceTarget, fraction: float) -> StanceTarget:
-        """Return the stance at a fraction of the straight path to another: 0 for this one, 1 for the other."""
+    def towards(self, other: StanceTarget, fraction: float | Float[np.ndarray, "n 1"]) -> StanceTarget:
+        """Return the stance at a fraction, or the stances at some, of the path to another: 0 for this one, 1 for it."""
         return StanceTarget(*(here + fraction * (there - here) for here, there in zip(self, other, strict=True)))
 
     @property
