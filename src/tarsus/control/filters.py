@@ -96,7 +96,7 @@ def integral_factors(time: Any, *, bandwidth: float) -> tuple[Any, Any, Any]:
         Factors [s, s, s^2].
     """
     exponent = -bandwidth * time
-    decay = np.exp(exponent) if isinstance(exponent, np.ndarray) else math.exp(exponent)
+    decay = np.exp(exponent)
     decayed = 1 - decay
     settled = decayed + decay * exponent
     of_value = (decayed + settled) / bandwidth
