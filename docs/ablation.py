@@ -41,7 +41,7 @@ MECHANISMS: dict[str, tuple[str, Callable[[], AbstractContextManager[Any]]]] = {
     "adaptation": ("without adaptation", nullcontext),
     "lost time": ("without lost time", nullcontext),
     "lost way": ("without odometry", nullcontext),
-    "obstacles": ("felt", off(landing, "collides", result=False)),
+    "obstacles": ("felt", off(landing, "_collides", result=False)),
     "search in stance": ("felt", partial(patch.object, FootContacts, "standing", ALL_STAND, create=True)),
     "reach": ("felt", off(PostureFeedback, "fit_to_reach", result=None)),
     "contacts": ("blind", nullcontext),

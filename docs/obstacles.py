@@ -19,7 +19,7 @@ import numpy as np
 import tarsus
 from page_tables import Several, measured, write_tables
 from rough_ground import PAGE, ROBOTS
-from tarsus.control.felt import collision, landing
+from tarsus.control.felt import landing
 from tarsus.simulation import SensorSuite, SimulatedPlant, terrain
 from tarsus.simulation.sensors.suite import FootSwitch, Sensor
 
@@ -143,10 +143,9 @@ def walk(job: Job) -> Outcome:
 
         return noted_call
 
-    reactions = (collision, "trying_again"), (landing, "rising_again"), (landing, "trying_again"), (landing, "_landed")
     with ExitStack() as noted:
-        for module, name in reactions:
-            noted.enter_context(patch.object(module, name, noting(getattr(module, name))))
+        for name in ("_rising_again", "_trying_again", "_landed"):
+            noted.enter_context(patch.object(landing, name, noting(getattr(landing, name))))
         plant.start(output)
         for twist, way in ((speed, AHEAD), (-speed, BACK)):
             for _ in range(round(way / speed / dt)):
