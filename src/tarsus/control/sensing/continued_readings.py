@@ -131,5 +131,4 @@ class ContinuedReadings:
         share = np.clip((then - times[after - 1]) / (times[after] - times[after - 1]), 0.0, 1.0)
         older, newer = (np.take_along_axis(commands, index, axis=0) for index in (after - 1, after))
         now, before = older + share * (newer - older)
-        moved: np.ndarray = now - before
-        return moved
+        return np.asarray(now - before)

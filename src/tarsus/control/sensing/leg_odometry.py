@@ -116,11 +116,8 @@ class LegOdometry:
             self._note_slip(feet, {leg: over - moved for leg, over in over_feet.items()}, dt)
             # Where the middle of the feet is beside the body's origin, the body's turn displaces it.
             passed = 1j * commanded.turned * places / len(over_feet)
-            most = speed * _MEMORY
-            self.behind += commanded.moved + passed - moved
-            self.behind *= min(1.0, most / max(abs(self.behind), 1e-12))
-        wanted, most = _GAIN * self.behind, _MOST * speed
-        return wanted * min(1.0, most / max(abs(wanted), 1e-12))
+            self.behind = _at_most(self.behind + (commanded.moved + passed - moved), speed * _MEMORY)
+        return _at_most(_GAIN * self.behind, _MOST * speed)
 
     def feet_off_commanded(self, legs: list[int], valid: ValidReadings, commanded: list[Vector]) -> dict[int, Vector]:
         """Return how far the feet of legs are from where they are commanded, as far as their angles are measured.
@@ -158,3 +155,8 @@ class LegOdometry:
         # Averaging cancels the noise of joint angles, which changes sign.
         self._slides = [mean + share * (now - mean) for mean, now in zip(self._slides, slides, strict=True)]
         self.slip = [abs(mean) for mean in self._slides]
+
+
+def _at_most(vector: complex, length: float) -> complex:
+    """Return a vector, shortened to a length if it is longer."""
+    return vector * min(1.0, length / max(abs(vector), 1e-12))
