@@ -567,14 +567,14 @@ def test_the_zero_offset_of_a_load_cell_is_learnt_while_its_foot_swings():
 
     assert touch(unloaded) == [True, False, True, False, True, True]
     for _ in range(40):
-        assert loads.offsets(unloaded, angles, swings, 0.04, out=[], centre=complex) is None
+        assert loads.offsets(unloaded, angles, swings, 0.04, out=[], centre=0j) is None
     # Learnt of feet in the middle of their swings, and no more than 0.15 of the weight.
     assert touch(unloaded) == [False, False, True, False, True, True]
     pressed = unloaded._replace(forces=((0.0, 0.0, 4.0), (0.0, 0.0, 1.0), (0.0, 0.0, 0.15 * weight + 1.0), *[None] * 3))
     assert touch(pressed) == [True, True, False, None, None, None]
     # A foot that meets an obstacle presses on it for a moment.
     loads, hit = FootLoads(STRIDER, None), ValidReadings(forces=((0.0, 0.0, weight), *[None] * 5))
-    loads.offsets(hit, angles, swings, 0.04, out=[], centre=complex)
+    loads.offsets(hit, angles, swings, 0.04, out=[], centre=0j)
     assert loads.contacts(hit._replace(forces=((0.0, 0.0, 0.07 * weight), *[None] * 5)), angles, state, 0.04)[0]
 
 
@@ -587,7 +587,7 @@ def test_compliant_feet_do_not_yield_to_the_zero_offsets_of_load_cells():
         for forces, gait in (([0.0] * 6, swings), ([3.0, 5.0, 4.0, 2.0, 6.0, 1.0], state)):
             cells = ValidReadings(forces=tuple((0.0, 0.0, sum(both)) for both in zip(forces, zeros, strict=True)))
             for _ in range(100):
-                offsets = soft.offsets(cells, angles, gait, 0.04, out=[], centre=complex)
+                offsets = soft.offsets(cells, angles, gait, 0.04, out=[], centre=0j)
         found.append(offsets)
     assert np.abs(found[0]).max() > 0.001
     assert found[1] == pytest.approx(found[0], abs=1e-5)
@@ -611,11 +611,11 @@ def test_compliant_feet_yield_to_measured_forces_or_else_to_joint_torques():
     angles, state = controller.angles, controller._tick.gait
     pressed = ValidReadings(forces=((0.0, 0.0, 50.0), *((0.0, 0.0, 0.1),) * 5))
     driven = ValidReadings(torques=tuple((0.0, 1.0, 0.5) for _ in range(6)))
-    assert FootLoads(STRIDER, None).offsets(pressed, angles, state, 0.01, out=[], centre=complex) is None
+    assert FootLoads(STRIDER, None).offsets(pressed, angles, state, 0.01, out=[], centre=0j) is None
 
     def offsets(readings):
         soft = FootLoads(STRIDER, Admittance(mass=1.0, damping=400.0, stiffness=400.0))
-        return soft.offsets(readings, angles, state, 0.01, out=[], centre=complex)
+        return soft.offsets(readings, angles, state, 0.01, out=[], centre=0j)
 
     np.testing.assert_array_equal(offsets(ValidReadings()), np.zeros(6))
     assert offsets(pressed)[0] > 0 > offsets(pressed)[1:].max()

@@ -490,7 +490,7 @@ def test_a_robot_is_carried_until_its_feet_have_held_it_for_a_while():
     condition, dt, seen = BodyCondition(), 0.04, []
     for tick in range(70):
         touches, holds = tick < 10 or tick >= 30, tick < 10 or tick in {32, 33} or tick >= 40
-        condition.step([touches] * 6, 0.0, dt, held=holds)
+        condition.step(touches, 0.0, dt, held=holds)
         seen.append(condition.carried)
     assert seen.index(True) == 22
     assert [tick for tick, carried in enumerate(seen) if carried] == list(range(22, 52))
@@ -499,7 +499,7 @@ def test_a_robot_is_carried_until_its_feet_have_held_it_for_a_while():
 def test_a_robot_whose_legs_cease_to_bear_it_is_carried_until_they_do_again():
     condition, seen = BodyCondition(), []
     for tick in range(30):
-        condition.step([True] * 6, 0.0, 0.04, held=True, lifted=tick == 10)
+        condition.step(True, 0.0, 0.04, held=True, lifted=tick == 10)
         seen.append(condition.carried)
     assert [tick for tick, carried in enumerate(seen) if carried] == list(range(10, 23))
     assert not condition.limitations

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import cmath
-from functools import partial
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -115,7 +114,7 @@ class FeltGround:
         stopped = self._swings.step([coxa for coxa, _, _ in angles], valid, dt, down if valid.torques else lands)
         measured = self._loads.contacts(valid, angles, state, dt)
         if not state.felt:
-            self.condition.step([True], valid.tilt, dt, held=True)
+            self.condition.step(True, valid.tilt, dt, held=True)
             if measured is None and valid.attitude is None and not self.condition.fallen:
                 return state
             heights = np.array(state.heights(float(state.posture.value[SWING_HEIGHT])))
@@ -136,11 +135,11 @@ class FeltGround:
         moves = self.missing.moving(state.in_heading(state.foot).tolist()) if self.missing.places else ()
         lands = [on and not (self.condition.carried or leg in moves) for leg, on in enumerate(lands)]
         self.contacts.step(measured, down, dt, count=ticks, lands=lands, leaving=leaving, rests=rests)
-        touches = [*map(self.contacts.is_in_contact, range(len(down)))]
+        touches = any(map(self.contacts.is_in_contact, range(len(down))))
         if self._loads.unborne:
             self.contacts.estimator.forget()
         self.condition.step(touches, valid.tilt, dt, held=self._held, lifted=self._loads.unborne)
-        centre = partial(self._middle, state)
+        centre = self._middle(state) if self._loads.compliance else 0j
         self.offsets = self._loads.offsets(valid, angles, state, dt, out=self._given[0], centre=centre)
         if self.missing.stranded and all(down):
             state = timing.with_first_lift(state, self.missing.stranded[0])

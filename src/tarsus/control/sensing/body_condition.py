@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
 
 from tarsus.control.limitation import Limitation, LimitationKind
 
@@ -37,22 +36,20 @@ class BodyCondition:
         """Whether the robot is held in the air, where its feet do not search for the ground."""
         return self.airborne > _IN_AIR
 
-    def step(
-        self, touching: Sequence[bool], tilt: float | None, dt: float, *, held: float, lifted: bool = False
-    ) -> None:
+    def step(self, touches: bool, tilt: float | None, dt: float, *, held: float, lifted: bool = False) -> None:
         """Take in the contacts and the tilt of a tick.
 
         Parameters
         ----------
-        touching : sequence of bool
-            Which feet touch the ground; True where nothing is known.
+        touches : bool
+            Whether any foot touches the ground; True where nothing is known.
         tilt : float or None
             Angle of the body against gravity [rad]; None where it is not measured.
         dt, held, lifted : float, float, bool
             Time since the last tick [s]; how surely the feet in contact hold the robot, 0 to 1; whether its legs have
             ceased to bear it, as joint angles tell.
         """
-        self.airborne = 0.0 if any(touching) else self.airborne + dt
+        self.airborne = 0.0 if touches else self.airborne + dt
         self._held = self._held + held * dt if held else 0.0
         if tilt is not None:
             self.tilt, changes = tilt, tilt < _UPRIGHT if self.fallen else tilt > _FALLEN

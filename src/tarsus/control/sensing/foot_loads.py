@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -50,6 +50,8 @@ class FootLoads:
     estimated, unborne : bool
         Whether contacts are estimated from joint angles; whether these tell that the legs have just ceased to bear the
         robot.
+    compliance : AdmittanceFilter or None
+        How the feet yield; None for stiff ones.
     """
 
     def __init__(self, robot: Robot, admittance: Admittance | None) -> None:
@@ -59,7 +61,7 @@ class FootLoads:
         self.estimated, self.unborne, self._untold, self._silent = False, False, math.inf, 0.0
         # Zero offset of each load cell: what it measures without load [N].
         self._zeros = [0.0] * robot.legs
-        self._filter = AdmittanceFilter(admittance, robot.legs) if admittance else None
+        self.compliance = AdmittanceFilter(admittance, robot.legs) if admittance else None
 
     def contacts(self, valid: ValidReadings, commanded: list[Vector], state: GaitState, dt: float) -> Contacts:
         """Return which feet touch the ground: from switches, else load cells, else joint angles; None where unknown.
@@ -100,8 +102,8 @@ class FootLoads:
         state: GaitState,
         dt: float,
         *,
-        out: Sequence[int],
-        centre: Callable[[], complex],
+        out: list[int],
+        centre: complex,
     ) -> Float[np.ndarray, "legs"] | None:
         """Return the upward offsets of compliant feet, from measured forces or joint torques [m]; None for stiff feet.
 
@@ -113,27 +115,27 @@ class FootLoads:
             The readings.
         commanded : list of (coxa, femur, tibia)
             Joint angles that were commanded in the last tick [rad].
-        state, dt, out : GaitState, float, sequence of int
+        state, dt, out : GaitState, float, list of int
             The gait state; length of the tick [s]; legs taken out of the gait, which bear no load.
-        centre : callable
-            Returns where the centre of mass is above the feet, x + iy in the heading frame [m].
+        centre : complex
+            Where the centre of mass is above the feet, x + iy in the heading frame [m]; unused for stiff feet.
         """
         forces: Sequence[Vector | None] | None = valid.forces
         if forces is not None:
             self._learn_zeros(forces, state, dt)
             cells = zip(forces, self._zeros, strict=True)
             forces = [each and (each[0], each[1], each[2] - zero) for each, zero in cells]
-        if self._filter is None:
+        if self.compliance is None:
             return None
         if forces is None and valid.torques is not None:
             forces = self._torques.forces(commanded, valid.torques)
         if forces is None or not self._weight:
-            return self._filter.step((None,) * len(state.foot), dt)
-        places = [[foot.real, foot.imag, 0.0] for foot in (state.in_heading(state.foot) - centre()).tolist()]
+            return self.compliance.step((None,) * len(state.foot), dt)
+        places = [[foot.real, foot.imag, 0.0] for foot in (state.in_heading(state.foot) - centre).tolist()]
         stands = [on and leg not in out for leg, on in enumerate(state.down.tolist())]
         expected = zip(forces, balanced_forces(places, stands, [0.0, 0.0], self._weight), stands, strict=True)
         errors = [force[2] - share if force is not None and down else None for force, share, down in expected]
-        return self._filter.step(errors, dt)
+        return self.compliance.step(errors, dt)
 
     def _learn_zeros(self, forces: Sequence[Vector | None], state: GaitState, dt: float) -> None:
         """Learn load cells' zero offsets from swinging feet, in bounded steps: a foot may briefly meet an obstacle."""
