@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from tarsus.control.limitation import Limitation, LimitationKind
+from tarsus.control.limitation import Cause, LimitationKind
 from tarsus.control.limiter.protocol import TwistGrant, TwistRequest
 from tarsus.control.transition.executor import TransitionExecutor
 from tarsus.control.walk.reference_governor import FootPrediction
@@ -22,9 +22,7 @@ __all__ = ["GovernorLimiter"]
 
 # Relative difference from the commanded twist up to which the twist counts as steady.
 _STEADY = 1e-3
-_STOPS = Limitation(
-    kind=LimitationKind.TWIST, cause="standing feet would leave their workspaces", asked=1.0, granted=0.0
-)
+_STOPS = Cause("standing feet would leave their workspaces").limitation(LimitationKind.TWIST, asked=1.0, granted=0.0)
 
 
 class GovernorLimiter:

@@ -74,23 +74,21 @@ class ReadingsValidator:
                 rejected.append(stale)
                 self._channels[index].reset()
                 values[index] = None
-        found: list[Any] = [
-            value if value is None else channel.read(value, rejected)
-            for channel, value in zip(self._channels, values, strict=True)
-        ]
+        given = zip(self._channels, values, strict=True)
+        found: list[Any] = [None if value is None else channel.read(value, rejected) for channel, value in given]
         attitude, _ = self._timed
         found.append(None if values[_ATTITUDE] is None else attitude.tilt)
         if not ages:
             # An empty mapping, which is not a number, means age 0.
             age = max(0.0, as_number(readings.age))
             return ValidReadings._make((*found, age, None, age, age, _NONE, tuple(rejected)))
-        given = [name for name, value in zip(_USED, values, strict=True) if value is not None]
+        names = [name for name, value in zip(_USED, values, strict=True) if value is not None]
         if of_joints and found[_JOINT_ANGLES]:
             young = self._young(of_joints, most, rejected)
             kept = tuple(each if leg in young else None for leg, each in enumerate(found[_JOINT_ANGLES]))
             found[_JOINT_ANGLES] = kept if any(kept) else None
             ages["joint_angles"] = max((max(of_joints[leg]) for leg in young), default=0.0)
-        tells = next((name for name in ("contacts", "forces") if name in given), "joint_angles")
+        tells = next((name for name in ("contacts", "forces") if name in names), "joint_angles")
         joint, ground, contact = (max(0.0, ages.get(name, 0.0)) for name in ("joint_angles", "ground", tells))
         return ValidReadings._make((*found, joint, of_joints, ground, contact, _NONE, tuple(rejected)))
 
