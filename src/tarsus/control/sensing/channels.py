@@ -53,7 +53,7 @@ def channels_of(robot: Robot) -> dict[str, Any]:
     torque = _MOST_STALLS * np.array(stalls)
     pull = np.array([-force, -force, -_PULL * weight])
     return {
-        "contacts": _ContactChannel(legs),
+        "contacts": _ContactChannel("contacts", legs, bool, (len(legs),)),
         "attitude": _AttitudeChannel(),
         "joint_angles": _JointAngleChannel(legs, np.asarray(robot.limits), fastest),
         "forces": _ForceChannel("forces", legs, (pull, force), beyond=_TOO_HEAVY, accept_z=True),
@@ -194,9 +194,6 @@ class _LegChannel(_Channel, ABC):
 
 class _ContactChannel(_LegChannel):
     """Which feet touch the ground."""
-
-    def __init__(self, legs: Sequence[str]) -> None:
-        super().__init__("contacts", legs, bool, (len(legs),))
 
     def _read_usual(self, numbers: list[bool]) -> tuple[bool, ...]:
         return tuple(numbers)

@@ -38,8 +38,8 @@ class SwingMonitor:
 
     def __init__(self) -> None:
         self.lag, self._lag, self._usual = 0.0, _LONGEST_LAG, _AT_FIRST
-        # Commands, latest first, and how long each lasted [s].
-        self._commanded, self._times = deque[list[float]](), deque[float]()
+        # How long each command lasted [s], and the command, latest first.
+        self._commands = deque[tuple[float, list[float]]]()
 
     def step(self, commanded: list[float], valid: ValidReadings, dt: float, down: Sequence[bool]) -> list[int]:
         """Return the legs in the air whose coxa joints are stopped.
@@ -79,22 +79,21 @@ class SwingMonitor:
 
     def _note(self, commanded: list[float], dt: float) -> float:
         """Note a command, and return the longest of the last ticks; 0 as long as these are too few [s]."""
-        commands, times = self._commanded, self._times
-        commands.appendleft(commanded)
-        times.appendleft(dt)
+        commands = self._commands
+        commands.appendleft((dt, commanded))
+        times = [time for time, _ in commands]
         window, span = max(times), sum(times)
         longest = _LONGEST_LAG + window + dt + _ROUNDING
         if span <= longest:
             return 0.0
-        while span - times[-1] > longest:
-            commands.pop()
-            span -= times.pop()
+        while span - commands[-1][0] > longest:
+            span -= commands.pop()[0]
         return window
 
     def _before(self, window: float) -> list[tuple[float, list[float]]]:
         """Return the commands in the window that ends a lag ago, latest first, each after its time there [s]."""
         held, end, lag, oldest = list[tuple[float, list[float]]](), 0.0, self._lag, self._lag + window + _ROUNDING
-        for time, command in zip(self._times, self._commanded, strict=True):
+        for time, command in self._commands:
             start, end = end, end + time
             if start > oldest:
                 break

@@ -53,11 +53,11 @@ class Reach:
 
     def __init__(self, robot: Robot) -> None:
         self.lowest, self.highest = [0.0] * robot.legs, [0.0] * robot.legs
-        self.stroke, self.strokes = 0.0, np.zeros(robot.legs, dtype=complex)
-        self.rest: Complex[np.ndarray, "legs"] = self.strokes
+        self.stroke = 0.0
+        self.rest: Complex[np.ndarray, "legs"] = np.zeros(robot.legs, dtype=complex)
+        self.bows = self.strokes = self.rest
         # Greatest height of each foot at the places of its stroke, straight on and swung out [m].
         self._tops = self._bowed = [(0.0,) * len(STROKE_PLACES)] * robot.legs
-        self.bows = self.strokes
         self.scale = min(float((robot.femur + robot.tibia).mean()) / _USUAL_LEG, 1.0)
         self._robot, self._mounts = robot, robot.mount_position[:, 0] + 1j * robot.mount_position[:, 1]
         self._key: tuple[float, ...] = ()
