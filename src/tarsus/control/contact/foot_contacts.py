@@ -6,7 +6,7 @@ import math
 from collections.abc import Sequence
 from typing import TypeAlias
 
-from tarsus.control.contact.footing import Footing, holds, sunk_at
+from tarsus.control.contact.footing import Footing, sunk_at
 from tarsus.control.readings import RollPitch
 from tarsus.control.sensing.contact_estimator import ContactEstimator, Contacts
 
@@ -184,23 +184,22 @@ class FootContacts:
 
     def _lifting_alone(self, footing: Footing, tilt: RollPitch | None) -> dict[int, float]:
         """Return the same for feet that lift a body which the others do not hold without, but would with that foot."""
-        places, down, centre, _ = footing
-        bears = [places[leg] for leg, on in enumerate(down) if on and self._bears(leg)]
-        without = [leg for leg, on in enumerate(down) if on and not self._bears(leg)]
+        bears = [leg for leg, on in enumerate(footing.down) if on and self._bears(leg)]
+        without = [leg for leg, on in enumerate(footing.down) if on and not self._bears(leg)]
         least = self._scale * _LIFTS_ALONE
         # A robot that sinks at one foot without contact is not held up by another one.
         sinks = any(self.sunk[leg] > least / 2 for leg in without)
-        if tilt is None or not without or sinks or len(bears) < _FEWEST or holds(bears, centre):
+        if tilt is None or not without or sinks or footing.held_by(bears):
             return {}
-        lifts = [leg for leg in without if min(-self.sunk[leg], -sunk_at(places[leg], tilt)) > least]
-        holding = [leg for leg in lifts if self._without[leg] > _UNHELD and holds([*bears, places[leg]], centre)]
+        lifts = [leg for leg in without if min(-self.sunk[leg], -sunk_at(footing.places[leg], tilt)) > least]
+        holding = [leg for leg in lifts if self._without[leg] > _UNHELD and footing.held_by([*bears, leg])]
         return dict.fromkeys(holding, _MOST_LIFT)
 
     def _balance(self, footing: Footing, tilt: RollPitch, dt: float) -> None:
         """Find a switch that is stuck open: a robot that does not tip stands on a foot that it does not feel."""
         missing = [leg for leg, on in enumerate(footing.down) if on and not self.standing[leg]]
-        standing = [footing.places[leg] for leg, on in enumerate(footing.down) if on and leg not in missing]
-        if not missing or holds(standing, footing.centre):
+        standing = [leg for leg, on in enumerate(footing.down) if on and self.standing[leg]]
+        if not missing or footing.held_by(standing):
             self._unheld = 0.0
         elif len(standing) >= _FEWEST:
             longest = max(missing, key=self._without.__getitem__)
@@ -230,10 +229,9 @@ class FootContacts:
             if unsure and self.sunk[leg] > most + _FALLS * self.age:
                 self._evidence[leg] = 0.0
         sinks = [leg for leg in legs if not self._bears(leg) and self.sunk[leg] > most and self.is_known(leg)]
-        bears = [footing.places[leg] for leg in legs if self._bears(leg)]
-        if not (sinks and bears) or holds(bears, footing.centre):
-            return None
-        return max(sinks, key=self.sunk.__getitem__)
+        bears = [leg for leg in legs if self._bears(leg)]
+        tips = sinks and bears and not footing.held_by(bears)
+        return max(sinks, key=self.sunk.__getitem__) if tips else None
 
     def forget_open(self) -> None:
         """Forget which switches are taken as stuck open: a robot that is carried is tilted by what carries it."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from tarsus.control.contact.footing import Footing, holds, sunk_at
+from tarsus.control.contact.footing import Footing, sunk_at
 from tarsus.control.readings import RollPitch
 
 __all__ = ["Sinking", "Tipping"]
@@ -105,7 +105,6 @@ class Sinking:
         leg = max(over, key=lambda leg: self._highest[leg] - over[leg])
         most = self._scale * _SLIDES + _TIMES * self._usual + _DEEPER * deeper
         if self._highest[leg] - over[leg] > most:
-            left = [footing.places[other] for other in over if other != leg]
-            return None if holds(left, footing.centre) else leg
+            return None if footing.held_by([other for other in over if other != leg]) else leg
         self._usual += min(_LEARNT * dt, 1.0) * (change - self._usual)
         return None
