@@ -120,12 +120,12 @@ class FeltGround:
             heights = np.array(state.heights(float(state.posture.value[SWING_HEIGHT])))
             state = state._replace(ground_height=heights, felt=[FeltFoot()] * len(heights))
         self.body.since, self._unread, self._ticks = self.body.since + dt, self._unread + dt, self._ticks + 1
-        self.body.level(valid.attitude, state)
+        self.body.level(state)
         kept = self._inputs is not None and not (stopped or self.body.looks)
         if kept and self.contacts.estimator.as_planned(measured, state, self.contacts.lifted):
             return state
         dt, ticks, self._unread, self._ticks, self._inputs = self._unread, self._ticks, 0.0, 0, None
-        self.body.see(valid.attitude, state, dt)
+        self.body.see(state, dt)
         self.ground.see(valid, state)
         # A greater lag of the joints than usual makes contacts late.
         self.contacts.age = max(valid.contact_age, self._swings.lag - USUAL_LAG)

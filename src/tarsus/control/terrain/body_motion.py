@@ -93,36 +93,34 @@ class BodyMotion:
         # Of the last look: place of the body in G, heading, and yaw of the body in the heading frame.
         self._before: tuple[complex, float, float] | None = None
 
-    def see(self, attitude: RollPitch | None, state: GaitState, dt: float) -> None:
+    def see(self, state: GaitState, dt: float) -> None:
         """Take the measured attitude.
+
+        Where there is none, the last one holds for a moment; then the body counts as level, as stepping feet would turn
+        it on and on by an old tilt.
 
         Parameters
         ----------
-        attitude : (roll, pitch) or None
-            Measured [rad]; None where it is not: the last one holds for a moment, then the body counts as level, as
-            stepping feet would turn it on and on by an old tilt.
         state, dt : GaitState, float
             The gait state; time since the last call [s].
         """
         self._unmeasured += dt
-        if attitude is not None:
-            self.tilt, self._unmeasured = off_commanded(attitude, state), 0.0
+        if self.measured.attitude is not None:
+            self.tilt, self._unmeasured = off_commanded(self.measured.attitude, state), 0.0
         elif self.tilt is not None and self._unmeasured > _HOLDS:
             self.tilt = (0.0, 0.0) if self._unmeasured <= _TIMEOUT else None
 
-    def level(self, attitude: RollPitch | None, state: GaitState) -> None:
+    def level(self, state: GaitState) -> None:
         """Turn by the newest attitude once between two looks: feet that take over load tilt the body within that time.
 
         Parameters
         ----------
-        attitude : (roll, pitch) or None
-            Measured [rad]; None where it is not.
         state : GaitState
             The gait state.
         """
-        if attitude is not None and self._move is not None and _PERIOD / 2 <= self.since < _PERIOD:
+        if self.measured.attitude is not None and self._move is not None and _PERIOD / 2 <= self.since < _PERIOD:
             before = self.tilt or (math.inf, math.inf)
-            self.see(attitude, state, 0.0)
+            self.see(state, 0.0)
             if math.dist(before, self.tilt or before) > _TURNED:
                 self.rates = self._posture.rates(self.ground.plane, self.tilt, self._move)
             self._move = None

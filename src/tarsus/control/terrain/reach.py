@@ -52,8 +52,7 @@ class Reach:
     """
 
     def __init__(self, robot: Robot) -> None:
-        self.lowest, self.highest = [0.0] * robot.legs, [0.0] * robot.legs
-        self.stroke = 0.0
+        self.lowest, self.highest, self.stroke = [0.0] * robot.legs, [0.0] * robot.legs, 0.0
         self.rest: Complex[np.ndarray, "legs"] = np.zeros(robot.legs, dtype=complex)
         self.bows = self.strokes = self.rest
         # Greatest height of each foot at the places of its stroke, straight on and swung out [m].
