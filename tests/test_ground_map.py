@@ -10,7 +10,7 @@ import pytest
 import tarsus
 from gait_robots import preset
 from tarsus.control.contact.footing import Footing
-from tarsus.control.felt.bearing import not_sunk, supporting
+from tarsus.control.felt.ground_search import not_sunk, supporting
 from tarsus.control.readings import SensorReadings, ValidReadings
 from tarsus.control.sensing.validation import ReadingsValidator
 from tarsus.control.terrain.foothold_choice import FootholdChoice

@@ -9,8 +9,7 @@ import numpy as np
 
 from tarsus.control.contact.footing import Footing, along_gravity, sunk_at
 from tarsus.control.contact.support import Support
-from tarsus.control.felt.bearing import supporting
-from tarsus.control.felt.ground_search import GroundSearch
+from tarsus.control.felt.ground_search import GroundSearch, supporting
 from tarsus.control.felt.landing import met_ground, put_down
 from tarsus.control.limitation import Limitation, LimitationKind
 from tarsus.control.readings import SensorReadings, Vector
@@ -21,7 +20,6 @@ from tarsus.control.sensing.foot_loads import FootLoads
 from tarsus.control.sensing.swing_monitor import USUAL_LAG, SwingMonitor
 from tarsus.control.sensing.validation import rejections
 from tarsus.control.terrain.body_motion import BodyMotion
-from tarsus.control.terrain.foothold_choice import FootholdChoice
 from tarsus.control.transition.executor import TransitionExecutor
 from tarsus.control.walk.felt_feet import FeltFoot, FeltInputs, GroundUnder, travel_share
 from tarsus.control.walk.state import GaitState
@@ -63,8 +61,8 @@ class FeltGround:
 
     Attributes
     ----------
-    contacts, ground, choice : FootContacts, GroundMap, FootholdChoice
-        Which feet bear load; where the ground is; where feet are put down on ground that is known.
+    contacts, ground : FootContacts, GroundMap
+        Which feet bear load; where the ground is.
     body, missing : BodyMotion, MissingGround
         How the body moves over its standing feet; what is done where feet find no ground.
     condition, support : BodyCondition, Support
@@ -79,12 +77,11 @@ class FeltGround:
         self, robot: Robot, angles: Float[np.ndarray, "legs 3"], *, body: BodyMotion, loads: FootLoads
     ) -> None:
         self.body, self.contacts, self.ground = body, body.contacts, body.ground
-        self.choice = FootholdChoice(self.ground)
         self.missing = MissingGround(robot.leg_names, scale=body.reach.scale)
         self.support, self.condition, self._swings = Support(), BodyCondition(), SwingMonitor()
         self.offsets: Float[np.ndarray, "legs"] | None = None
         self.readings, self._loads = ContinuedReadings(robot), loads
-        self._search = GroundSearch(body, self.choice, self.condition, self.missing)
+        self._search = GroundSearch(body, self.condition, self.missing)
         self._held = 0.0
         self._centre = complex(*centre_of_mass(robot, angles)[:2].tolist())
         # Inputs kept while all is as planned, and what for; ticks and times since contacts and support were looked at.
@@ -177,7 +174,7 @@ class FeltGround:
         if self.body.looks:
             free = [on and leg not in self.missing.obstacles.stops for leg, on in enumerate(footing.down)]
             self.body.step(tick, footing._replace(down=free), transitions, pace=self.support.pace)
-            self.choice.step(state, self.body.reach, footholds)
+            self.body.choice.step(state, self.body.reach, footholds)
         stands = self._search.step(state, footing, footholds, dt, rests=self._rests and self.support.held)
         bearing = footing._replace(down=supporting(state, self.body, footing, walks=not standing))
         self._decide_on_support(bearing, due, dt, timing.swing_time)
@@ -219,7 +216,7 @@ class FeltGround:
             lowering=scale * (_GENTLE if gently else descent),
             scale=scale,
             late=self.contacts.age,
-            beside=self.choice.beside,
+            beside=body.choice.beside,
             in_air=self.condition.in_air,
             rough=min(depth / (scale * _ROUGH), 1.0),
             slow_contact=body.stance.lasting,

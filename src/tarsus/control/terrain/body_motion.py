@@ -16,6 +16,7 @@ from tarsus.control.pose.posture_feedback import BodyMove, Levelling, PostureFee
 from tarsus.control.pose.slope_stance import SlopeStance
 from tarsus.control.readings import RollPitch, ValidReadings, Vector
 from tarsus.control.sensing.leg_odometry import CommandedMotion, LegOdometry
+from tarsus.control.terrain.foothold_choice import FootholdChoice
 from tarsus.control.terrain.ground_map import GroundMap
 from tarsus.control.terrain.reach import Reach
 from tarsus.control.terrain.roughness import GroundAdaptation, Roughness
@@ -54,8 +55,8 @@ class BodyMotion:
 
     Attributes
     ----------
-    contacts, ground : FootContacts, GroundMap
-        Which feet bear load; where the ground is.
+    contacts, ground, choice : FootContacts, GroundMap, FootholdChoice
+        Which feet bear load; where the ground is; where feet are put down on ground that is known.
     rates, drift : PostureRates, complex
         How the body is to move; velocity of the feet that makes up for lost way, in the heading frame [m/s].
     heading : HeadingFeedback
@@ -80,6 +81,7 @@ class BodyMotion:
         self.reach, self.odometry = Reach(robot), LegOdometry(robot)
         scale = self.reach.scale
         self.contacts, self.ground = FootContacts(robot.legs, scale=scale), GroundMap(scale=scale)
+        self.choice = FootholdChoice(self.ground)
         self._posture, self.roughness = PostureFeedback(levelling, scale=scale), Roughness(adaptation, scale=scale)
         self.slope, self.stance = SlopeLimit(adaptation.friction), SlopeStance(robot, scale=scale)
         self.stopped = StoppedBody(robot)

@@ -32,7 +32,7 @@ def integrated(walk: WalkComponents, tick: TickState, dt: float) -> TickState:
     if inputs.felt is None:
         after = scaling.advance(integrate, walk.solver.angles, dt)
     else:
-        after = scaling.follow(integrate, walk.solver.angles, dt, exact=bool(walk.ground.choice.crossing))
+        after = scaling.follow(integrate, walk.solver.angles, dt, exact=bool(walk.ground.body.choice.crossing))
     targets.step(dt * scaling.rate, after.down)
     return _finished(walk, tick, after, dt)
 
