@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 
 from tarsus.control.terrain.ground_map import GroundMap
@@ -13,9 +11,6 @@ from tarsus.control.walk.state import GaitState
 from tarsus.gait.foot_polygons import NORMALS_CONJUGATE
 from tarsus.gait.ground_heights import TRIED, better_foothold, on_way
 from tarsus.gait.stance.stance_geometry import SWING_HEIGHT
-
-if TYPE_CHECKING:
-    from jaxtyping import Bool
 
 __all__ = ["FootholdChoice"]
 
@@ -80,17 +75,13 @@ class FootholdChoice:
                 held, end = leg in self.holes or leg not in self.beside, end - self.beside.get(leg, 0j)
                 self.holes.pop(leg, None)
                 room = (reach.lowest[leg], highest[leg], reach.highest[leg])
-                allowed = _within(footholds, reach, leg)
+                # A foot keeps room for its stroke within its workspace.
+                kept = np.abs((NORMALS_CONJUGATE * reach.strokes[leg]).real) / 2
+                slack = footholds.placement_bounds[leg] - kept.clip(_STROKE_SHARE * footholds.placement_radii[leg])
+                allowed = (slack.clip(0.0) >= _ALONG_TRIED).all(axis=1)
                 better = better_foothold(ground.lies, ground.plane.at, start, end, allowed=allowed, reach=room)
                 self.beside[leg], place = better, end + better
                 if held and ground.is_hole(place):
                     self.holes[leg] = end
                 if on_way(ground.lies, start, place).min() < ground.floor(np.array(place)):
                     self.crossing.add(leg)
-
-
-def _within(footholds: FootholdTransfer, reach: Reach, leg: int) -> Bool[np.ndarray, "tried"]:
-    """Return which of the tried offsets leave a foot room for its stroke within its workspace."""
-    kept = np.abs((NORMALS_CONJUGATE * reach.strokes[leg]).real) / 2
-    slack = footholds.placement_bounds[leg] - kept.clip(_STROKE_SHARE * footholds.placement_radii[leg])
-    return np.asarray((slack.clip(0.0) >= _ALONG_TRIED).all(axis=1))
