@@ -129,8 +129,8 @@ class FeltGround:
         self.contacts.estimated = self._loads.estimated
         leaving, rests = timing.due(state, _LEAVING), self._rests and self.support.held
         # Feet of a robot that is carried wait, and do not search for ground. Those that step back search anew.
-        moves = self.missing.moving(state.in_heading(state.foot).tolist()) if self.missing.places else ()
-        lands = [on and not (self.condition.carried or leg in moves) for leg, on in enumerate(lands)]
+        places, waits = state.in_heading(state.foot).tolist(), self.condition.carried
+        lands = [on and not (waits or self.missing.steps_back(leg, places[leg])) for leg, on in enumerate(lands)]
         self.contacts.step(measured, down, dt, count=ticks, lands=lands, leaving=leaving, rests=rests)
         touches = any(map(self.contacts.is_in_contact, range(len(down))))
         if self._loads.unborne:

@@ -105,10 +105,6 @@ class MissingGround:
         """Return whether a foot, now at a place in the heading frame, is on its way to another one."""
         return leg in self.places and abs(self.places[leg] - foot) > self._scale * _THERE
 
-    def moving(self, feet: Sequence[complex]) -> list[int]:
-        """Return the legs whose feet, now at places in the heading frame, are on their way to other ones."""
-        return [leg for leg in self.places if self.steps_back(leg, feet[leg])]
-
     def tries(self, leg: int, foot: complex) -> bool:
         """Return whether a foot, now at a place in the heading frame, is on its way past an obstacle."""
         return self.obstacles.tries(leg) and self.steps_back(leg, foot)
