@@ -18,8 +18,6 @@ __all__ = ["StoppedBody"]
 # Push from which the body counts as stopped, over the weight; time over which the push is averaged, and how long it has
 # to last [s]. In physics it is 0.13 at most on rough ground; at a block that the body gets over, it lasts up to 3 s.
 _STOPPED, _TIME, _LASTS = 0.15, 1.0, 3.5
-# Joint angles that stand in for those of legs without measured ones, which do not count [rad].
-_ANY = (0.0, 0.0, 0.0)
 
 
 class StoppedBody:
@@ -66,7 +64,8 @@ class StoppedBody:
             gravity = complex(math.sin(pitch), -math.sin(roll) * math.cos(pitch))
             # Coxae bear only a part of the weight along the plane of the body: it counts where it lowers the push.
             push = min((gravity * way.conjugate()).real, 0.0)
-            feet = self._solver.feet([each or _ANY for each in angles])
+            # Legs without measured angles do not count, whatever stands in for these.
+            feet = self._solver.feet([each or (0.0, 0.0, 0.0) for each in angles])
             for leg in bears:
                 torque = torques[leg]
                 if angles[leg] is not None and torque is not None:

@@ -11,8 +11,6 @@ __all__ = ["Obstacles"]
 # From which stop on, after the first collision, a foot tries beside its way; on how many sides, and how far beside [m];
 # how far behind the place of its first stop it starts again [m].
 _STOPS, _SIDES, _BESIDE, _BEFORE = 3, 2, 0.06, 0.04
-# Length below which a way has no direction [m].
-_NO_WAY = 1e-9
 
 
 class Obstacles:
@@ -66,7 +64,7 @@ class Obstacles:
         """
         stops, start, goal = self.stops.get(leg, (1, foot, goal))
         self.stops[leg], way = (stops + 1, start, goal), goal - start
-        way /= max(abs(way), _NO_WAY)
+        way /= max(abs(way), 1e-9)
         start -= self._scale * _BEFORE * way
         self.goals.pop(leg, None)
         if stops >= _STOPS + _SIDES:

@@ -8,10 +8,13 @@ from typing import TypeAlias
 
 from tarsus.control.walk.state import GaitState
 
-__all__ = ["ContactEstimator", "Contacts"]
+__all__ = ["TIMEOUT", "ContactEstimator", "Contacts"]
 
 Contacts: TypeAlias = Sequence[bool | None] | None
 """Which feet touch the ground, as measured: None for a foot that is not measured, None as a whole where no foot is."""
+
+TIMEOUT = 0.15
+"""Time without a measurement after which a contact is unknown, and estimated from joint angles instead [s]."""
 
 # Bound on the magnitude of the log odds: evidence of this size outweighs all earlier readings of a foot.
 _BOUND = 6.0
@@ -19,8 +22,6 @@ _BOUND = 6.0
 _ERROR, _WEIGHT, _GREATEST_ERROR = 0.001, 600.0, 0.2
 # Number of readings above which the counts of all and of wrong readings are halved, to forget old ones.
 _MEMORY = 3000.0
-# Time without a measurement after which a contact is unknown [s].
-_TIMEOUT = 0.15
 # Swing phase up to which contact that has lasted since lift-off is still as planned.
 _RISING = 0.3
 
@@ -68,7 +69,7 @@ class ContactEstimator:
         for leg, reading in enumerate(readings or (None,) * len(self.touching)):
             if reading is None:
                 self._ages[leg] += dt
-                self.known[leg] = self._ages[leg] <= _TIMEOUT
+                self.known[leg] = self._ages[leg] <= TIMEOUT
                 continue
             self._ages[leg], self.known[leg] = 0.0, True
             odds = self._odds[leg] + (evidence if reading else -evidence)

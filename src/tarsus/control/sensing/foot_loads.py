@@ -11,7 +11,7 @@ import numpy as np
 from tarsus.control.limitation import Limitation, LimitationKind
 from tarsus.control.pose.admittance import Admittance, AdmittanceFilter
 from tarsus.control.readings import ValidReadings, Vector
-from tarsus.control.sensing.contact_estimator import Contacts
+from tarsus.control.sensing.contact_estimator import TIMEOUT, Contacts
 from tarsus.control.sensing.joint_contacts import JointContacts
 from tarsus.control.walk.state import GaitState
 from tarsus.kinematics.mass import known_weight
@@ -28,8 +28,6 @@ _CONTACT_SHARE = 0.04
 # Swing phases between which a foot is in the air; how fast the zero offset of its load cell is learnt there [1/s];
 # bounds on the error that is learnt from, and on the offset itself, over the robot's weight.
 _RISEN, _LANDS, _RATE, _MOST_ERROR, _MOST_OFFSET = 0.2, 0.5, 5.0, 0.1, 0.15
-# Contacts are estimated from joint angles once no other sensor has measured them for this long [s].
-_UNTOLD = 0.15
 # Time of steps in which joint angles tell no contacts after which that is reported [s].
 _REPORTED = 8.0
 _SILENT = "joint_angles: they tell no contacts, as the servos do not yield to loads as those of the robot file do"
@@ -83,7 +81,7 @@ class FootLoads:
             least, cells = _CONTACT_SHARE * self._weight, zip(valid.forces, self._zeros, strict=True)
             found = [None if force is None else force[2] - zero > least for force, zero in cells]
         self._untold = self._untold + dt if found is None else 0.0
-        if self._untold > _UNTOLD and valid.joint_angles is not None and self._joints is not None:
+        if self._untold > TIMEOUT and valid.joint_angles is not None and self._joints is not None:
             found = self._joints.contacts(valid, commanded, state, dt)
             self.estimated, self.unborne = found is not None, self._joints.unborne
             self._silent = 0.0 if self.estimated else self._silent + dt * (not state.down.all())
@@ -92,7 +90,7 @@ class FootLoads:
     @property
     def limitations(self) -> list[Limitation]:
         """Joint angles that have not told contacts for long."""
-        silent = self._untold > _UNTOLD and self._silent > _REPORTED
+        silent = self._untold > TIMEOUT and self._silent > _REPORTED
         return [Limitation(kind=LimitationKind.READINGS, cause=_SILENT)] if silent else []
 
     def offsets(
