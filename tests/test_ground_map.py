@@ -293,11 +293,10 @@ def test_a_foot_passes_over_what_is_on_its_way_and_rises_first_where_that_is_nea
     known.step(standing(lambda place: 0.0), None, at(), 0.03, drift=0j)
     known.see(ValidReadings(ground=GroundHeights(heights=np.where(np.abs(X - 0.1) < 0.025, 0.06, 0.0))), at())
     known.step(standing(lambda place: 0.0), None, at(), 0.03, drift=0j)
-    over = known.under(0j, 0.2 + 0j, 0.01, (-0.1, 0.2), clears=False)
-    assert over[:7] == pytest.approx((0.01, -0.09, 0.21, 0.07, False, None, False), abs=1e-9)
-    assert known.under(0.05 + 0j, 0.2 + 0j, 0.0, (None, 0.2), clears=False).steep
-    assert known.under(0.05 + 0j, 0.1 + 0j, 0.0, (None, 0.2), clears=False).lowest == pytest.approx(0.06)
-    assert not known.under(0.15 + 0j, 0.15 + 0j, 0.0, (None, 0.2), clears=False).steep
+    assert known.on_way(0j, 0.2 + 0j) == (pytest.approx(0.06, abs=1e-9), False)
+    assert known.on_way(0.05 + 0j, 0.2 + 0j)[1]
+    assert not known.on_way(0.15 + 0j, 0.15 + 0j)[1]
+    assert GroundMap().on_way(0j, 0.2 + 0j) == (-math.inf, False)
     # A body 50 mm high whose middle is 60 mm over the ground has to rise by 60 - (60 - 25) + 15 mm.
     assert known.body_rise((0.12, 0.08, 0.025), 0.06) == pytest.approx(0.04)
     assert GroundMap().body_rise((0.12, 0.08, 0.025), 0.06) == -math.inf

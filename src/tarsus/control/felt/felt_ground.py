@@ -224,17 +224,20 @@ class FeltGround:
 
     def _under(self, state: GaitState, leg: int, place: complex, *, down: bool) -> GroundUnder:
         """Return the ground under a foot in the air or without contact, at a place in the heading frame."""
-        heading, lifted = cmath.exp(1j * state.yaw), self.contacts.lifted[leg]
+        heading, elevation, lifted = cmath.exp(1j * state.yaw), state.elevation, self.contacts.lifted[leg]
         known = not self.condition.in_air and self.contacts.is_known(leg) and (down or lifted)
         stays = self.missing.gives_up(leg) or (down and self.missing.is_raised(-sunk_at(place, self.body.off)))
         goal = place if down else state.in_heading(complex(state.foothold[leg]))
-        reach, rests = self.body.reach, self._rests and self.support.held
-        lowest = max(reach.lowest[leg], self.ground.at(goal) - _NEAR) if rests else reach.lowest[leg]
+        reach, expected = self.body.reach, self.ground.at(goal)
+        lowest = max(reach.lowest[leg], expected - _NEAR) if self._rests and self.support.held else reach.lowest[leg]
+        lowest = lowest if known and not stays else expected
         straight, bowed = reach.highest_on_way(leg, place, goal)
-        room = (lowest if known and not stays else None, straight)
-        found = self.ground.under(place, goal, state.elevation, room, clears=lifted and not self._loads.estimated)
+        way, steep = self.ground.on_way(place, goal)
+        # A foot that has met an obstacle stays up until it is past that, where the ground is not known.
+        clears = lifted and not (self.ground.given or self._loads.estimated)
         back = state.origin + self.missing.places[leg] * heading if leg in self.missing.places else None
-        return found._replace(bow=heading * reach.bows[leg], bowed=state.elevation + bowed, place=back)
+        under = GroundUnder(elevation + expected, elevation + lowest, elevation + straight, elevation + way, steep)
+        return under._replace(place=back, clears=clears, bow=heading * reach.bows[leg], bowed=elevation + bowed)
 
     def _decide_on_support(self, footing: Footing, due: list[bool] | None, dt: float, swing_time: float) -> None:
         """Decide whether feet may lift off, and the pace of the walk; `due` is None while the robot stands."""

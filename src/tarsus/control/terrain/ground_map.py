@@ -12,7 +12,6 @@ import numpy as np
 
 from tarsus.control.readings import RollPitch, ValidReadings
 from tarsus.control.terrain.reach import Reach
-from tarsus.control.walk.felt_feet import GroundUnder
 from tarsus.control.walk.state import GaitState
 from tarsus.gait.foot_plane import FootPlane, fitted_plane
 from tarsus.gait.ground_heights import GroundHeights, is_steep, lowest_near, on_way
@@ -167,29 +166,19 @@ class GroundMap:
         found = np.append(way, lowest)
         return bool((found[:-2] - found[2:]).max() > _CLIFF * abs(place) * 2 / (len(way) - 1))
 
-    def under(
-        self, start: complex, foothold: complex, elevation: float, room: tuple[float | None, float], *, clears: bool
-    ) -> GroundUnder:
-        """Return the ground under a foot and on its way.
+    def on_way(self, start: complex, foothold: complex) -> tuple[float, bool]:
+        """Return the greatest height of the known ground on a foot's way, and whether it rises soon on that way.
+
+        Where nothing is known, the height is minus infinity [m].
 
         Parameters
         ----------
         start, foothold : complex
             Where the foot is, and where it will be put down, in the heading frame [m].
-        elevation : float
-            Height of the heading frame [m].
-        room : (float or None, float)
-            Least and greatest height of the foot in the heading frame [m]; None for that of the expected ground.
-        clears : bool
-            Whether a foot that has met an obstacle stays up until it is past that, where the ground is not known.
         """
-        expected, (lowest, highest) = self.at(foothold), room
-        least = expected if lowest is None else lowest
-        under = GroundUnder(elevation + expected, elevation + least, elevation + highest, clears=clears)
         if not self.given:
-            return under
-        way = elevation + float(on_way(self.expected, start, foothold).max())
-        return under._replace(way=way, steep=is_steep(self.expected, start, foothold), clears=False)
+            return -math.inf, False
+        return float(on_way(self.expected, start, foothold).max()), is_steep(self.expected, start, foothold)
 
     def rises_ahead(self, reach: Reach) -> tuple[list[float], list[float]]:
         """Return least and greatest ground height at each leg's next footholds, over the plane's at the origin [m].
