@@ -100,7 +100,8 @@ class ServoMonitor:
         self._commands: deque[tuple[float, Float[np.ndarray, "legs 3"]]] = deque()
         # The first look is immediate, and so in the same ticks as the looks at the body: all other ticks are short.
         self._span = self._time = self._since = self._wait = 0.0
-        self._evidence: Float[np.ndarray, "2 legs 3"] | None = None
+        # Evidence against each joint, by its error and by being stuck [s]; the least error that counts [rad].
+        self._evidence, self._least = np.zeros((2, *stall_torque.shape)), _ERROR
         # Legs whose feet touched the ground at the last look.
         self._touched = set[int]()
         # Of femurs that were off at the last look: evidence since the foot last touched or the femur was not above its
@@ -141,14 +142,12 @@ class ServoMonitor:
         touching = touched | self._touched
         raised, self._raised = self._raised, {}
         stuck = self._stuck(np.stack([measured, commanded]), valid, dt)
-        if self._evidence is not None:
-            self._evidence *= 0.5 ** (dt / _MEMORY)
+        self._evidence *= 0.5 ** (dt / _MEMORY)
         # A joint's error against all recent commands is at most that against the last one.
         off = np.abs(measured - commanded)
-        if stuck is None and not (off > (_ERROR if self._evidence is None else _IDLE_ERROR)).any():
+        if stuck is None and not (off > self._least).any():
             return
-        if self._evidence is None:
-            self._evidence = np.zeros((2, *commanded.shape))
+        self._least = _IDLE_ERROR
         recent = np.array([angles for _, angles in self._commands])
         over, under = measured - np.maximum.reduce(recent), np.minimum.reduce(recent) - measured
         errors = np.maximum(over, under)
