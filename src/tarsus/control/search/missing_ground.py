@@ -233,7 +233,8 @@ class MissingGround:
 
     def drop(self, leg: int) -> None:
         """Forget what has stopped a foot, and where it is to stand."""
-        self.obstacles.forget(leg)
+        self.obstacles.stops.pop(leg, None)
+        self.obstacles.goals.pop(leg, None)
         self.places.pop(leg, None)
 
     def stopped(self, leg: int, foot: complex, goal: complex, bow: complex) -> complex:

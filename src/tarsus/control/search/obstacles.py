@@ -84,8 +84,3 @@ class Obstacles:
         """Return the legs whose feet try to get past an obstacle while the velocity leads back along their way."""
         back = {leg: start - goal for leg, (_, start, goal) in self.stops.items() if self.tries(leg)}
         return [leg for leg, way in back.items() if leads_towards(velocity, way)]
-
-    def forget(self, leg: int) -> None:
-        """Forget that a foot was stopped."""
-        self.stops.pop(leg, None)
-        self.goals.pop(leg, None)
