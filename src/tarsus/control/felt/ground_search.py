@@ -164,13 +164,10 @@ def supporting(state: GaitState, body: BodyMotion, footing: Footing, *, walks: b
     """
     reach, deeper, found = body.reach, body.roughness.deeper * walks, list[bool]()
     velocity = complex(*state.twist.value[:2].tolist())
+    ahead = reach.scale * _AHEAD * abs(velocity)
     for leg, over in enumerate((state.ground_height - state.elevation).tolist()):
         place = footing.places[leg]
-        soon = (
-            deeper > 0.0
-            and (complex(reach.rest[leg]) * velocity.conjugate()).real < reach.scale * _AHEAD * abs(velocity)
-            and body.ground.at(place) - over < deeper
-            and sunk_at(place, body.off) < reach.scale * _SINKS
-        )
+        soon = deeper > 0.0 and (complex(reach.rest[leg]) * velocity.conjugate()).real < ahead
+        soon = soon and body.ground.at(place) - over < deeper and sunk_at(place, body.off) < reach.scale * _SINKS
         found.append(footing.down[leg] and (soon or body.contacts.supports(leg)))
     return found

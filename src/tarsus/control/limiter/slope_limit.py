@@ -91,9 +91,7 @@ class SlopeLimit:
         # While the body tips, the walk waits: stepping on the spot begins once it no longer does.
         tilts = self._tilts and bool(self.refused)
         self._stops = tilts and self._leads and (self._stops or not self._tips)
-        if self._stops:
-            return grant.at_most(0.0, Limitation(kind=LimitationKind.GROUND, cause=self.reason))
-        return grant
+        return grant.at_most(0.0, Limitation(kind=LimitationKind.GROUND, cause=self.reason)) if self._stops else grant
 
     def _rises(self, velocity: complex) -> float:
         """Return how fast the ground rises [m/s]; 0 for motion along the slope."""
