@@ -174,6 +174,20 @@ def test_a_walk_that_its_joints_slow_down_says_so():
     assert controller.twist[0] == pytest.approx(full / 2)
 
 
+def test_ticks_that_are_walked_in_part_are_reported_while_the_robot_walks():
+    controller = controller_of()
+    controller.step((0.0, 0.0, 0.0), 0.1)
+    assert controller.limitations == ()
+    for _ in range(40):
+        controller.step((0.05, 0.0, 0.0), 0.05)
+    assert controller.limitations == ()
+    controller.step((0.05, 0.0, 0.0), 0.1)
+    (found,) = controller.limitations
+    assert found.text() == "twist: 50 % of the command; of a tick longer than 50 ms, only 50 ms are walked"
+    controller.step((0.05, 0.0, 0.0), 0.05)
+    assert controller.limitations == ()
+
+
 def test_a_body_goes_no_lower_than_the_ground_and_starts_no_lower():
     controller = controller_of()
     run(controller, Command(body_height=0.005), 16)

@@ -42,6 +42,7 @@ __all__ = ["WalkController"]
 # Longest part of a tick that is walked [s], so that the joints don't jump after a late tick.
 _LONGEST_TICK = 0.05
 _JOINTS = Cause("joint speed and acceleration")
+_LATE = Cause(f"of a tick longer than {1e3 * _LONGEST_TICK:.0f} ms, only {1e3 * _LONGEST_TICK:.0f} ms are walked")
 
 
 @represented("robot", "gait", "walk_state", "time", "twist", "cycle_time", "margin", "angles", "limitations")
@@ -111,7 +112,8 @@ class WalkController:
         setup = WalkSetup.of(
             robot, gait, body_height=body_height, swing_height=swing_height, foot_distance=foot_distance
         )
-        self.robot, self.time = setup.robot, 0.0
+        # Share of the last tick that was walked.
+        self.robot, self.time, self._walked = setup.robot, 0.0, 1.0
         limits = joint_limits(self.robot, joint_speed, joint_acceleration)
         self.joint_speed, self.joint_acceleration = limits
         planner = TransitionPlanner(self.robot, limits, foot_distance=setup.foot_distance)
@@ -153,7 +155,7 @@ class WalkController:
         """
         command = command if isinstance(command, Command) else Command(twist=command)
         require_number("dt", dt, zero=False)
-        dt = min(float(dt), _LONGEST_TICK)
+        self._walked, dt = min(_LONGEST_TICK / dt, 1.0), min(float(dt), _LONGEST_TICK)
         self._walk.transitions.scheduler.request(command)
         tick = estimated(self._walk, self._tick, readings, dt)
         tick = planned(self._walk, tick, command, dt)
@@ -192,13 +194,18 @@ class WalkController:
     def limitations(self) -> tuple[Limitation, ...]:
         """Why the command is not met in full."""
         walk, rate = self._walk, self._walk.time_scaling.rate
-        slow = rate < SLOW and bool(self._tick.twist.any())
+        moves = bool(self._tick.twist.any())
+        causes = ((_JOINTS, rate, SLOW), (_LATE, self._walked, 1.0)) if moves else ()
         return (
             *walk.transitions.limitations,
             *walk.foot_targets.limitations,
             *self._tick.limitations,
             *walk.ground.limitations,
-            *([_JOINTS.limitation(LimitationKind.TWIST, asked=1.0, granted=rate)] if slow else []),
+            *(
+                cause.limitation(LimitationKind.TWIST, asked=1.0, granted=share)
+                for cause, share, least in causes
+                if share < least
+            ),
         )
 
     @property
