@@ -193,9 +193,8 @@ class WalkController:
     @property
     def limitations(self) -> tuple[Limitation, ...]:
         """Why the command is not met in full."""
-        walk, rate = self._walk, self._walk.time_scaling.rate
-        moves = bool(self._tick.twist.any())
-        causes = ((_JOINTS, rate, SLOW), (_LATE, self._walked, 1.0)) if moves else ()
+        walk = self._walk
+        slower = (_JOINTS, walk.time_scaling.rate, SLOW), (_LATE, self._walked, 1.0)
         return (
             *walk.transitions.limitations,
             *walk.foot_targets.limitations,
@@ -203,8 +202,8 @@ class WalkController:
             *walk.ground.limitations,
             *(
                 cause.limitation(LimitationKind.TWIST, asked=1.0, granted=share)
-                for cause, share, least in causes
-                if share < least
+                for cause, share, least in slower
+                if share < least and self._tick.twist.any()
             ),
         )
 

@@ -40,5 +40,7 @@ class PendingTransitionLimiter:
         self._fraction *= 0.0 if stands else math.exp(-request.dt / _TIME_CONSTANT)
         # The twist approaches what the stances allow from above; the transition begins only below that.
         fraction = self._fraction * grant.fraction
-        slow = Limitation(kind=LimitationKind.TWIST, cause=_CAUSE, asked=1.0, granted=fraction)
-        return grant.at_most(fraction, *([slow] if self._fraction < _REPORTED and any(request.twist) else []))
+        if self._fraction < _REPORTED and any(request.twist):
+            slow = Limitation(kind=LimitationKind.TWIST, cause=_CAUSE, asked=1.0, granted=fraction)
+            return grant.at_most(fraction, slow)
+        return grant.at_most(fraction)
