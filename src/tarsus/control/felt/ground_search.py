@@ -8,7 +8,7 @@ from tarsus.control.contact.foot_contacts import FootContacts
 from tarsus.control.contact.footing import Footing, off_commanded, sunk_at
 from tarsus.control.contact.tipping import Tipping
 from tarsus.control.search.missing_ground import MissingGround
-from tarsus.control.search.search import Search
+from tarsus.control.search.search import Search, in_hole
 from tarsus.control.sensing.body_condition import BodyCondition
 from tarsus.control.terrain.body_motion import BodyMotion
 from tarsus.control.transition.foothold_transfer import FootholdTransfer
@@ -19,8 +19,8 @@ __all__ = ["GroundSearch", "not_sunk", "supporting"]
 
 # Speed above which a foot that goes down is not at the end of its reach, which itself sinks with the body [m/s].
 _FALLS = 0.1
-# Time after which a robot that was lifted may be found to tip, where contacts are estimated: until then it is put down,
-# and settles [s].
+# Time after which the ground is known to a robot that was lifted, and it may be found to tip where contacts are
+# estimated: until then it is put down, and settles [s].
 _SETTLES = 8.0
 # Depth on even ground from which a foot bears no load that is not felt, whatever its shin rests on [m]; greatest such
 # depth, on rough ground too, over the body height.
@@ -74,7 +74,7 @@ class GroundSearch:
             contacts.forget_open()
             ground.plane = FootPlane()
         contacts.hovering = _hovering(state, contacts, depths)
-        held = [condition.in_air or contacts.stands(leg) for leg in range(len(depths))]
+        held = [condition.in_air or self._is_held(leg, footing, depth) for leg, depth in enumerate(depths)]
         stands = [on and not missing.steps_back(leg, footing.places[leg]) for leg, on in enumerate(held)]
         missing.sees(ground, body.choice.holes, footholds.rest.tolist(), dt)
         waits = condition.carried or (rests and low == footing.down)
@@ -95,6 +95,13 @@ class GroundSearch:
         missing.step(searches, footing, dt, footholds=footholds, deeper=deeper)
         body.roughness.at_edge(missing.edge)
         return stands
+
+    def _is_held(self, leg: int, footing: Footing, depth: float) -> bool:
+        """Return whether a foot at a depth below the expected ground stands: at the wall of a trench it does not."""
+        body, known = self._body, self._lifted > _SETTLES
+        leans, deeper, scale = sunk_at(footing.places[leg], body.off), body.roughness.deeper, body.reach.scale
+        wall = known and in_hole(depth, leans, footing.height, deeper=deeper, scale=scale)
+        return body.contacts.stands(leg) and not wall
 
     def _searches(self, state: GaitState, footing: Footing, stands: list[bool]) -> list[Search]:
         """Return the feet that should stand and feel no ground."""
