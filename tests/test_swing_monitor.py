@@ -123,6 +123,24 @@ def test_a_soft_servo_that_swings_about_its_command_is_not_stopped():
         assert monitor.step([commanded] * 6, valid, DT, AIR) == []
 
 
+@pytest.mark.parametrize("stops_at", [math.inf, 4.095])
+def test_a_servo_that_is_started_suddenly_lags_and_is_not_stopped(stops_at):
+    # After calm swings one begins with the speed that it would have had by then, as from the limit of a joint.
+    monitor, found, sent, angle, speed = SwingMonitor(), math.inf, deque([0.0] * 3, maxlen=3), 0.0, 0.0
+    for tick in range(440):
+        time = tick * DT
+        commanded = swung(time) if time < 3.8 else -0.3 if time < 4.0 else min(6.0 * (time - 4.0) - 0.3, 0.6)
+        sent.append(commanded)
+        for _ in range(10):
+            change = (sent[0] - angle) / 0.02 - speed
+            speed = (speed + min(max(change, -0.1), 0.1)) * (time < stops_at)
+            angle += DT / 10 * speed
+        valid = ValidReadings(joint_angles=((angle, 0.0, 0.0),) * 6)
+        if monitor.step([commanded] * 6, valid, DT, AIR):
+            found = min(found, time)
+    assert found == stops_at or 0.0 < found - stops_at <= 0.03
+
+
 @pytest.mark.parametrize("lag", [0.01, 0.03])
 def test_a_leg_that_turns_around_before_its_lag_is_learnt_is_not_stopped(lag):
     # It is drawn back as a standing leg, and swings forward faster.

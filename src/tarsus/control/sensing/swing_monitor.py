@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections import deque
 from collections.abc import Sequence
 
@@ -15,6 +16,8 @@ USUAL_LAG = 0.03
 # A joint is stopped if it is behind by more than the first [rad] plus the second times its usual angle behind; first
 # guess of that usual angle [rad], and how fast it is learnt [1/s].
 _BEHIND, _TIMES, _AT_FIRST, _MEAN_RATE = 0.02, 3.0, 0.02, 1.0
+# A joint that moves faster than this share of its commanded speed only lags, as servos do that are started suddenly.
+_MOVES = 0.5
 # Longest lag of a joint, from its command to the reading [s]; how fast the lag is learnt [1/s]; square of joint speeds
 # below which a joint tells little of it [rad^2/s^2].
 _LONGEST_LAG, _RATE, _SLOW = 0.12, 5.0, 0.5
@@ -40,6 +43,8 @@ class SwingMonitor:
         self.lag, self._lag, self._usual = 0.0, _LONGEST_LAG, _AT_FIRST
         # How long each command lasted [s], and the command, latest first.
         self._commands = deque[tuple[float, list[float]]]()
+        # Time [s]; by leg, the angle that was measured last, and when [rad], [s].
+        self._now, self._measured = 0.0, dict[int, tuple[float, float]]()
 
     def step(self, commanded: list[float], valid: ValidReadings, dt: float, down: Sequence[bool]) -> list[int]:
         """Return the legs in the air whose coxa joints are stopped.
@@ -52,6 +57,7 @@ class SwingMonitor:
             The readings; time since the last tick [s]; which feet should stand.
         """
         stopped, window = list[int](), self._note(commanded, dt)
+        self._now += dt
         if not window or valid.joint_angles is None:
             return stopped
         lag, usual, held = self._lag, self._usual, self._before(window)
@@ -59,15 +65,20 @@ class SwingMonitor:
         # Where few joints are measured in a tick, what is learnt from each counts for the others, too.
         dt *= len(down) / max(len(down) - len(valid.predicted), 1)
         for leg, angles in enumerate(valid.joint_angles):
-            if angles is None or down[leg] or leg in valid.predicted:
+            if angles is None or leg in valid.predicted:
+                continue
+            before, at = self._measured.get(leg, (math.nan, 0.0))
+            self._measured[leg] = angles[0], self._now
+            if down[leg]:
                 continue
             angle, speed, turned = angles[0], (newer[leg] - older[leg]) / window, 0.0
             for time, command in held:
                 turned += time * command[leg]
             behind = turned / window - angle
             # Whether the leg is still commanded onwards: within the lag, its motion may have reversed.
-            still = (commanded[leg] - angle) * speed > 0.0
-            if still and behind * speed > (_BEHIND + _TIMES * usual) * abs(speed):
+            onwards = (commanded[leg] - angle) * speed > 0.0
+            slow = (angle - before) * speed < _MOVES * speed * speed * (self._now - at)
+            if onwards and slow and behind * speed > (_BEHIND + _TIMES * usual) * abs(speed):
                 stopped.append(leg)
             else:
                 usual += _MEAN_RATE * dt * (abs(behind) - usual)
