@@ -15,11 +15,14 @@ from tarsus.robot.robot import Robot
 
 __all__ = ["JointContacts"]
 
-# Swing phases between which a foot is in the air, and its leg learnt from; swing phase from which on a foot lands.
-_CLEAR, _DOWNWARD, _LANDING = 0.12, 0.45, 0.55
+# Swing phases between which a foot is in the air, and its leg learnt from: up and down, or friction would look like an
+# offset; from the second on, a foot lands.
+_CLEAR, _LANDING = 0.12, 0.55
 # Torque on the femur above which a foot is in contact, over the load of all legs: of a landing foot, of a standing one,
 # and of a rising one stopped by an obstacle. A standing foot with little load counts: else it would delay the walk.
 _CONTACT, _STANDS, _OBSTACLE = 0.12, -0.02, 0.3
+# That torque of a landing foot is at least so many times the residual torque of free swings.
+_SPREAD = 2.0
 # That torque of a foot new in its stance: the first, until it has borne more than the second for the third in all [s];
 # before, it may be over a hole.
 _NEW, _BORNE, _LONG = 0.06, 0.15, 0.03
@@ -120,7 +123,7 @@ class JointContacts:
             for (_, femur, tibia), new, old, spring, near, far, mean in behind
         ]
         stands, phases = state.down.tolist(), state.swing_phase.tolist()
-        free = [leg for leg, on in enumerate(stands) if not on and _CLEAR < phases[leg] < _DOWNWARD]
+        free = [leg for leg, on in enumerate(stands) if not on and _CLEAR < phases[leg] < _LANDING]
         if free:
             self._learn(free, off, [(newer[leg] - older[leg]) / _STEP for leg in free], dt)
         load = sum(torque for torque, on in zip(off, stands, strict=True) if on)
@@ -133,12 +136,12 @@ class JointContacts:
         self._familiar = self._left < (_STRANGE if self._familiar else _FAMILIAR) * max(self._load, self._least)
         if self._load < self._least or not self._familiar:
             return None
-        touching = list[bool]()
+        touching, lands = list[bool](), max(_CONTACT * self._load, _SPREAD * self._left)
         for leg, (torque, drive, on, swung) in enumerate(zip(off, driven, stands, phases, strict=True)):
             rising = not on and swung < _LANDING
             self._borne[leg] = (self._borne[leg] + dt * (torque > _BORNE * self._load)) * on
-            stood = _STANDS if self._borne[leg] > _LONG else _NEW
-            least = self._load * (_OBSTACLE if rising else stood if on else _CONTACT)
+            stood = self._load * (_STANDS if self._borne[leg] > _LONG else _NEW)
+            least = self._load * _OBSTACLE if rising else stood if on else lands
             touching.append((abs(torque) if rising else torque) > least + _UNSURE * abs(drive))
         return touching
 
