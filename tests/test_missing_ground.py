@@ -20,7 +20,7 @@ from tarsus.control.limitation import LimitationKind
 from tarsus.control.limiter.protocol import TwistGrant, TwistRequest
 from tarsus.control.readings import ValidReadings
 from tarsus.control.search.missing_ground import MissingGround
-from tarsus.control.search.search import Search, in_hole
+from tarsus.control.search.search import Search, hole_depth, is_level
 from tarsus.control.sensing.leg_odometry import LegOdometry
 from tarsus.control.terrain.roughness import Roughness
 from tarsus.control.walk.felt_feet import FeltFoot
@@ -397,7 +397,7 @@ def test_a_foot_that_is_measured_deep_is_over_a_hole_whatever_holds_its_leg_up()
      (0.076, 0.0, 0.01, False), (0.092, 0.0, 0.01, True), (0.124, 0.029, 0.03, True)],
 )  # fmt: skip
 def test_a_foot_with_contact_is_in_a_hole_at_its_depth_unless_the_body_leans(depth, leans, deeper, hole):
-    assert in_hole(depth, leans, 0.1, deeper=deeper, scale=1.0) == hole
+    assert (depth > hole_depth(0.1, deeper) and is_level(leans, deeper, 1.0)) == hole
 
 
 def test_a_foot_that_is_commanded_deep_and_held_up_by_its_leg_is_over_no_hole():
@@ -695,7 +695,6 @@ def test_a_robot_stops_at_a_hole_says_so_and_walks_away_from_it():
     assert walk.go(-0.13, 1.5) < stopped - 0.08
 
 
-@pytest.mark.no_cover
 @pytest.mark.parametrize("start", [0.46, 0.47])
 def test_a_foot_that_touches_the_wall_of_a_trench_does_not_stand(start):
     # It closed its switch 0.8 body heights below the others; the robot walked on, and lay on the edge.

@@ -8,7 +8,7 @@ from tarsus.control.contact.foot_contacts import FootContacts
 from tarsus.control.contact.footing import Footing, off_commanded, sunk_at
 from tarsus.control.contact.tipping import Tipping
 from tarsus.control.search.missing_ground import MissingGround
-from tarsus.control.search.search import Search, in_hole
+from tarsus.control.search.search import Search, hole_depth, is_level
 from tarsus.control.sensing.body_condition import BodyCondition
 from tarsus.control.terrain.body_motion import BodyMotion
 from tarsus.control.transition.foothold_transfer import FootholdTransfer
@@ -74,7 +74,12 @@ class GroundSearch:
             contacts.forget_open()
             ground.plane = FootPlane()
         contacts.hovering = _hovering(state, contacts, depths)
-        held = [condition.in_air or self._is_held(leg, footing, depth) for leg, depth in enumerate(depths)]
+        held = [condition.in_air or contacts.stands(leg) for leg in range(len(depths))]
+        deepest = hole_depth(footing.height, deeper)
+        if max(depths) > deepest and self._lifted > _SETTLES and not condition.in_air:
+            level = [is_level(sunk_at(place, body.off), deeper, body.reach.scale) for place in footing.places]
+            # Where the body is level, a foot as deep as a hole touches the wall of a trench.
+            held = [on and not (deep > deepest and flat) for on, deep, flat in zip(held, depths, level, strict=True)]
         stands = [on and not missing.steps_back(leg, footing.places[leg]) for leg, on in enumerate(held)]
         missing.sees(ground, body.choice.holes, footholds.rest.tolist(), dt)
         waits = condition.carried or (rests and low == footing.down)
@@ -95,13 +100,6 @@ class GroundSearch:
         missing.step(searches, footing, dt, footholds=footholds, deeper=deeper)
         body.roughness.at_edge(missing.edge)
         return stands
-
-    def _is_held(self, leg: int, footing: Footing, depth: float) -> bool:
-        """Return whether a foot at a depth below the expected ground stands: at the wall of a trench it does not."""
-        body, known = self._body, self._lifted > _SETTLES
-        leans, deeper, scale = sunk_at(footing.places[leg], body.off), body.roughness.deeper, body.reach.scale
-        wall = known and in_hole(depth, leans, footing.height, deeper=deeper, scale=scale)
-        return body.contacts.stands(leg) and not wall
 
     def _searches(self, state: GaitState, footing: Footing, stands: list[bool]) -> list[Search]:
         """Return the feet that should stand and feel no ground."""

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-__all__ = ["STANDS", "Search", "in_hole"]
+__all__ = ["STANDS", "Search", "hole_depth", "is_level"]
 
 STANDS = 0.02
 """Depth at which the walk stands still, besides how much deeper ground may be [m]."""
-# Depth of a foot above which there is a hole, over the body height: at first, and where it has stepped
-# back to; on rough ground both are greater by this factor times the depth that the roughness allows.
+# Depth of a foot above which there is a hole, over the body height: at first, and where it has stepped back to; on
+# rough ground both are greater by this factor times the depth that the roughness allows.
 _DEEP, _DEEP_AGAIN, _ROUGHLY_DEEP = 0.75, 0.4, 1.6
 # How far the body is off its attitude at a foot that may hold it: such a foot steps back once, after a long search [m].
 _LEANS = 0.02
@@ -81,30 +81,29 @@ class Search(NamedTuple):
         """
         # At another place, a foot does not search for long at the end of its reach.
         reached = not self.falls and (self.depth > deeper + scale * STANDS or not self.lasts)
-        deep = self.depth - max(self.raised, 0.0) > _hole_depth(height, deeper, again=again)
+        deep = self.depth - max(self.raised, 0.0) > hole_depth(height, deeper, again=again)
         missing = deep or held_up or (reached if again else not self.lasts)
-        level = _is_level(self.leans, deeper, scale)
+        level = is_level(self.leans, deeper, scale)
         return missing and (level or (held and not (again or self.lasts)))
 
 
-def in_hole(depth: float, leans: float, height: float, *, deeper: float, scale: float) -> bool:
-    """Return whether a foot with contact is in a hole, and touches its wall.
+def hole_depth(height: float, deeper: float, *, again: bool = False) -> float:
+    """Return the depth of a foot above which there is a hole [m].
 
     Parameters
     ----------
-    depth, leans, deeper, scale : float
-        As in `Search` and `Search.is_missing`.
-    height : float
-        Body height [m].
+    height, deeper, again : float, float, bool
+        As in `Search.is_missing`.
     """
-    return depth > _hole_depth(height, deeper) and _is_level(leans, deeper, scale)
-
-
-def _hole_depth(height: float, deeper: float, *, again: bool = False) -> float:
-    """Return the depth of a foot above which there is a hole [m]."""
     return (_DEEP_AGAIN if again else _DEEP) * height + _ROUGHLY_DEEP * deeper
 
 
-def _is_level(leans: float, deeper: float, scale: float) -> bool:
-    """Return whether the body is near its attitude at a foot, so that the depth of that tells of the ground."""
+def is_level(leans: float, deeper: float, scale: float) -> bool:
+    """Return whether the body is near its attitude at a foot, so that the depth of that tells of the ground.
+
+    Parameters
+    ----------
+    leans, deeper, scale : float
+        As in `Search` and `Search.is_missing`.
+    """
     return abs(leans) < max(scale * _LEANS, deeper)
